@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Reading and writing picture files, in memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/image/image.h"
+#include "core/scene/scene.h"
+
+namespace penumbra {
+
+using Bytes = std::vector<std::uint8_t>;
+
+// PNG with 1 (grey), 3 (RGB) or 4 (RGBA) channels, 8 bits, with an sRGB chunk. Filter SUB,
+// libdeflate level 1: measured 7 times faster than stb_image_write and smaller (docs/decisions).
+Bytes encode_png(const Image8& image);
+
+// PFM (http://www.pauldebevec.com/Research/HDR/PFM/): "PF" for 3 channels, "Pf" for 1, little endian,
+// scale -1.0, rows bottom to top in the file.
+Bytes encode_pfm(const ImageF& image);
+
+// Why a picture could not be decoded: one sentence.
+struct DecodeError {
+    std::string message;
+};
+
+struct DecodeLimits {
+    int max_side_px = 8192;
+    double max_pixels = 4096.0 * 4096.0;
+};
+
+// Any PNG to RGBA 8 bits, straight alpha. The header is checked against the limits before anything
+// is inflated, and no more is inflated than the header promises.
+std::variant<Texels, DecodeError> decode_png(std::span<const std::uint8_t> bytes, const DecodeLimits& limits = {});
+
+std::variant<ImageF, DecodeError> decode_pfm(std::span<const std::uint8_t> bytes);
+
+}  // namespace penumbra

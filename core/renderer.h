@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// Scene in, picture and statistics out. The one entry to the light.
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/image/image.h"
+#include "core/render_stats.h"
+#include "core/scene/limits.h"
+#include "core/scene/problem.h"
+#include "core/scene/scene.h"
+
+namespace penumbra {
+
+// The world failed: no device, a shader that does not build, out of memory. Carries a full sentence.
+class DeviceError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+struct RendererOptions {
+    std::string device = "auto";  // "auto", "cpu", "gpu", or an index as `penumbra info` lists them
+    std::string shader_dir;       // when set, shaders are read from here instead of the embedded ones
+};
+
+struct DeviceInfo {
+    std::string kind;      // "cpu" or "gpu"
+    std::string platform;  // "surfaceless", "device 0"
+    std::string vendor, renderer, gl_version, glsl_version;
+    int max_texture_side = 0;
+    int max_texture_buffer_texels = 0;
+    int max_group_invocations = 0;
+    int max_loop_iterations = 0;  // measured at start; 0: no limit found (see docs/operations.md)
+};
+
+// What a device listing shows; `index` is what --device takes.
+struct DeviceListing {
+    int index = 0;
+    std::string name;
+    bool software = false;
+};
+
+struct RenderResult {
+    // 8-bit sRGB for "png"; linear, three channels, for "pfm".
+    std::variant<Image8, ImageF> picture;
+    RenderStats stats;
+};
+
+// Features of the format that this build does not render yet, each a problem with code
+// "not_supported_yet" that names its key. Nothing that parses is silently ignored.
+Problems unsupported(const Scene& scene);
+
+// Owns the one GL context. Create, use and destroy it on the same thread (checked).
+class Renderer {
+public:
+    explicit Renderer(const RendererOptions& options = {});  // throws DeviceError
+    ~Renderer();
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+
+    // Precondition: validate(scene) and unsupported(scene) are empty. Throws DeviceError.
+    RenderResult render(const Scene& scene);
+
+    const DeviceInfo& device() const;
+
+    // Renders a small scene with a known answer (a uniform sky, a disc) and compares.
+    // Empty when right, else a sentence saying what was wrong. Used for readiness.
+    std::string self_test();
+
+    static std::vector<DeviceListing> list_devices();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace penumbra

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Every limit on a scene, each with its reason. Operators may lower them; tests stand on both sides.
+#pragma once
+
+#include <cstddef>
+
+namespace penumbra {
+
+struct Limits {
+    // llvmpipe's textures end at 16384; the margin needs the rest. Also the README's promise.
+    int max_canvas_side_px = 8192;
+    // One 8192 x 8192 picture. The working set is about 40 bytes a pixel.
+    double max_canvas_pixels = 8192.0 * 8192.0;
+    // Canvas plus margin on both sides, in pixels: the distance field covers it all.
+    double max_domain_side_px = 16384;
+    double max_domain_pixels = 8192.0 * 8192.0 * 1.5;
+    // The packed scene stays far under a buffer texture's 128 MiB (llvmpipe).
+    std::size_t max_shapes = 20000;
+    std::size_t max_points_per_shape = 16384;  // one loop of a shader; Mesa 22 ends loops at 65535
+    std::size_t max_points = 200000;
+    std::size_t max_lights = 1000;
+    std::size_t max_sky_stops = 256;
+    // One atlas; a picture is decoded to 4 bytes a texel.
+    int max_bitmap_side_px = 8192;
+    double max_bitmap_texels = 4096.0 * 4096.0;  // of all bitmaps together
+    // Beyond these single precision and squared lengths lose meaning.
+    double max_coordinate = 1e9;   // world units, absolute
+    double min_view_side = 1e-6;   // world units
+    double max_radiance = 1e9;     // linear; products of three stay finite in single precision
+    double max_exposure_ev = 64;   // absolute
+    int max_bounces = 64;          // the format's own bound
+};
+
+}  // namespace penumbra

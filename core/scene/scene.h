@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+// The scene as plain values: what docs/scene-format.md describes, after parsing, before validation.
+//
+// Units: lengths are world units, angles are degrees, clockwise on screen (x right, y down).
+// Colours are linear RGB radiance (or reflectance for albedo), never negative once validated.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace penumbra {
+
+using Point = glm::dvec2;   // world units
+using Colour = glm::dvec3;  // linear RGB
+
+struct Circle {
+    Point center{0};
+    double radius = 0;
+};
+
+struct Ellipse {
+    Point center{0};
+    glm::dvec2 radii{0};  // semi-axes before rotation
+    double rotation_deg = 0;
+};
+
+struct Rect {
+    Point center{0};
+    glm::dvec2 size{0};  // full width and height before rotation
+    double rotation_deg = 0;
+    double corner_radius = 0;  // rounds inwards; at most half the shorter side
+};
+
+// A capsule: every point within width/2 of the segment. Zero length is a disc.
+struct Line {
+    Point from{0};
+    Point to{0};
+    double width = 1;
+};
+
+// The union of the capsules of its segments; `closed` joins the last point to the first.
+struct Polyline {
+    std::vector<Point> points;
+    double width = 1;
+    bool closed = false;
+};
+
+// Filled by the even-odd rule.
+struct Polygon {
+    std::vector<Point> points;
+};
+
+// Decoded picture: RGBA, 8 bits, straight alpha, colours sRGB encoded, rows top to bottom.
+struct Texels {
+    int width = 0;
+    int height = 0;
+    std::vector<std::uint8_t> rgba;  // 4 * width * height
+};
+
+struct Bitmap {
+    std::shared_ptr<const Texels> image;
+    Point position{0};     // world position of the top left corner
+    glm::dvec2 size{0};    // world size of the whole picture
+    double emission_scale = 1;
+    double solid_above = 0.5;  // alpha/255 at or above this is solid
+    bool as_albedo = false;    // colours are albedo instead of emission
+};
+
+using Geometry = std::variant<Circle, Ellipse, Rect, Line, Polyline, Polygon, Bitmap>;
+
+struct Shape {
+    Geometry geometry;
+    Colour emission{0};  // ignored for Bitmap
+    Colour albedo{0};    // ignored for Bitmap
+};
+
+struct PointLight {
+    Point position{0};
+    Colour intensity{0};  // radiant intensity per radian
+};
+
+struct SpotLight {
+    Point position{0};
+    double direction_deg = 0;
+    double inner_angle_deg = 0;  // half angles, 0 <= inner <= outer <= 180
+    double outer_angle_deg = 0;
+    Colour intensity{0};
+};
+
+struct DirectionalLight {
+    double direction_deg = 0;  // the direction in which the light travels
+    Colour irradiance{0};      // across the beam
+};
+
+using Light = std::variant<PointLight, SpotLight, DirectionalLight>;
+
+// A stop of the sky gradient; `angle_deg` is the direction one looks in.
+struct SkyStop {
+    double angle_deg = 0;
+    Colour radiance{0};
+};
+
+struct Sky {
+    Colour radiance{0};            // used when `gradient` is empty
+    std::vector<SkyStop> gradient;  // linear in angle round the circle; equal angles make a step
+};
+
+struct ViewRect {
+    double x = 0, y = 0, w = 0, h = 0;  // world units
+};
+
+struct Canvas {
+    int width = 0;   // pixels
+    int height = 0;  // pixels
+    std::optional<ViewRect> view;  // default: one world unit is one pixel
+    double margin = 0;             // world units
+    Colour floor_albedo{1};
+
+    ViewRect view_or_default() const {
+        return view ? *view : ViewRect{0, 0, double(width), double(height)};
+    }
+    // Side of a pixel in world units. Pixels are square once the scene is validated.
+    double pixel_size() const { return view_or_default().w / width; }
+};
+
+enum class Quality { draft, standard, high };
+enum class Skip { all, none };
+enum class Solids { emission, lit };
+
+struct RenderSettings {
+    std::string method = "auto";
+    Quality quality = Quality::standard;
+    int bounces = 0;
+    Skip skip = Skip::all;
+    std::string view = "final";
+};
+
+struct OutputSettings {
+    std::string format = "png";
+    int bit_depth = 8;
+    bool antialias = true;
+    Solids solids = Solids::emission;
+    double exposure_ev = 0;
+    std::string tonemap = "none";
+};
+
+struct Scene {
+    Canvas canvas;
+    Sky sky;
+    std::vector<Shape> shapes;
+    std::vector<Light> lights;
+    RenderSettings render;
+    OutputSettings output;
+};
+
+}  // namespace penumbra
