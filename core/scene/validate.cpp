@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include "core/scene/validate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <variant>
+
+#include "core/scene/path.h"
+#include "core/scene/range_checks.h"
+#include "core/scene/validate_shapes.h"
+#include "core/scene/wording.h"
+#include "core/scene/words.h"
+
+namespace penumbra {
+
+namespace {
+
+// Pixels may be this much off square, relative: what decimal text and one division lose.
+constexpr double kSquareTolerance = 1e-6;
+
+bool validate_view(RangeChecks& checks, const Path& where, const ViewRect& view) {
+    const double high = checks.limits().max_coordinate;
+    const double low = checks.limits().min_view_side;
+    const bool x = checks.between(where.index(0), view.x, -high, high);
+    const bool y = checks.between(where.index(1), view.y, -high, high);
+    const bool w = checks.between(where.index(2), view.w, low, high);
+    const bool h = checks.between(where.index(3), view.h, low, high);
+    return x && y && w && h;
+}
+
+void validate_domain(RangeChecks& checks, const Path& where, const Canvas& canvas) {
+    const Limits& limits = checks.limits();
+    const double margin_px = canvas.margin / canvas.pixel_size();
+    const double width = canvas.width + 2 * margin_px;
+    const double height = canvas.height + 2 * margin_px;
+    if (std::max(width, height) <= limits.max_domain_side_px &&
+        width * height <= limits.max_domain_pixels) {
+        return;
+    }
+    checks.add(canvas.margin > 0 ? where.key("margin") : where, "too_large",
+               "makes a domain of " + number_text(std::ceil(width)) + " x " +
+                   number_text(std::ceil(height)) +
+                   " pixels (canvas and margin on both sides); at most " +
+                   number_text(limits.max_domain_side_px) + " on a side and " +
+                   number_text(limits.max_domain_pixels) + " in all are allowed");
+}
+
+void validate_canvas(RangeChecks& checks, const Path& where, const Canvas& canvas) {
+    const Limits& limits = checks.limits();
+    const bool width =
+        checks.between(where.key("width"), canvas.width, 1, limits.max_canvas_side_px);
+    const bool height =
+        checks.between(where.key("height"), canvas.height, 1, limits.max_canvas_side_px);
+    const bool view = !canvas.view || validate_view(checks, where.key("view"), *canvas.view);
+    const bool margin =
+        checks.between(where.key("margin"), canvas.margin, 0, limits.max_coordinate);
+    const Path floor = where.key("floor");
+    checks.colour(floor.key("albedo"), canvas.floor_albedo, 1);
+    if (!width || !height || !view) {
+        return;
+    }
+    const double pixels = double(canvas.width) * double(canvas.height);
+    if (pixels > limits.max_canvas_pixels) {
+        checks.add(where, "too_large",
+                   "must have at most " + number_text(limits.max_canvas_pixels) + " pixels, has " +
+                       number_text(pixels));
+        return;
+    }
+    const ViewRect shown = canvas.view_or_default();
+    const double pixel_w = shown.w / canvas.width;
+    const double pixel_h = shown.h / canvas.height;
+    if (std::abs(pixel_w - pixel_h) > kSquareTolerance * std::max(pixel_w, pixel_h)) {
+        checks.add(where.key("view"), "not_square",
+                   "must make square pixels: for " + std::to_string(canvas.width) + " x " +
+                       std::to_string(canvas.height) + " pixels a view " + number_text(shown.w) +
+                       " wide must be " + number_text(pixel_w * canvas.height) + " high, is " +
+                       number_text(shown.h));
+        return;
+    }
+    if (margin) {
+        validate_domain(checks, where, canvas);
+    }
+}
+
+// Angles go up from 0 to 360. Two stops at one angle are a step, and 0 and 360 are one angle; a
+// third stop there could never be seen.
+void validate_gradient(RangeChecks& checks, const Path& where, const std::vector<SkyStop>& stops) {
+    if (!checks.count(where, stops.size(), checks.limits().max_sky_stops, "stops")) {
+        return;
+    }
+    const auto at_seam = [](const SkyStop& s) { return s.angle_deg == 0 || s.angle_deg == 360; };
+    const auto seam_stops = std::count_if(stops.begin(), stops.end(), at_seam);
+    for (std::size_t i = 0; i < stops.size(); ++i) {
+        const Path stop = where.index(i);
+        const Path angle = stop.key("angle");
+        const double here = stops[i].angle_deg;
+        const bool good = checks.between(angle, here, 0, 360);
+        checks.colour(stop.key("radiance"), stops[i].radiance, checks.limits().max_radiance);
+        if (!good || i == 0) {
+            continue;
+        }
+        if (here < stops[i - 1].angle_deg) {
+            checks.add(angle, "not_in_order",
+                       "must not be less than the angle before it, " +
+                           number_text(stops[i - 1].angle_deg) + ", is " + number_text(here));
+            continue;
+        }
+        const bool third =
+            i >= 2 && here == stops[i - 1].angle_deg && here == stops[i - 2].angle_deg;
+        const bool third_at_seam = at_seam(stops[i]) && seam_stops > 2 && i + 1 == stops.size();
+        if (third || third_at_seam) {
+            checks.add(angle, "too_many",
+                       "must not be the third stop at one angle (two make a step" +
+                           std::string(at_seam(stops[i]) ? "; 0 and 360 are one angle" : "") +
+                           "), is " + number_text(here));
+        }
+    }
+}
+
+void validate_sky(RangeChecks& checks, const Path& where, const Sky& sky) {
+    if (sky.gradient.empty()) {
+        checks.colour(where.key("radiance"), sky.radiance, checks.limits().max_radiance);
+    } else {
+        validate_gradient(checks, where.key("gradient"), sky.gradient);
+    }
+}
+
+class LightChecks {
+public:
+    LightChecks(RangeChecks& checks, const Path& where) : checks_(checks), where_(where) {}
+
+    void operator()(const PointLight& light) {
+        checks_.coordinates(where_.key("position"), light.position);
+        colour("intensity", light.intensity);
+    }
+
+    void operator()(const SpotLight& light) {
+        checks_.coordinates(where_.key("position"), light.position);
+        checks_.finite(where_.key("direction"), light.direction_deg);
+        const Path inner = where_.key("inner_angle");
+        const bool inner_good = checks_.between(inner, light.inner_angle_deg, 0, 180);
+        const bool outer_good =
+            checks_.between(where_.key("outer_angle"), light.outer_angle_deg, 0, 180);
+        if (inner_good && outer_good && light.inner_angle_deg > light.outer_angle_deg) {
+            checks_.add(inner, "out_of_range",
+                        "must be at most outer_angle, " + number_text(light.outer_angle_deg) +
+                            ", is " + number_text(light.inner_angle_deg));
+        }
+        colour("intensity", light.intensity);
+    }
+
+    void operator()(const DirectionalLight& light) {
+        checks_.finite(where_.key("direction"), light.direction_deg);
+        colour("irradiance", light.irradiance);
+    }
+
+private:
+    void colour(std::string_view key, const Colour& value) {
+        checks_.colour(where_.key(key), value, checks_.limits().max_radiance);
+    }
+
+    RangeChecks& checks_;
+    const Path& where_;
+};
+
+void validate_lights(RangeChecks& checks, const Path& where, const std::vector<Light>& lights) {
+    if (!checks.count(where, lights.size(), checks.limits().max_lights, "lights")) {
+        return;
+    }
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const Path light = where.index(i);
+        std::visit(LightChecks(checks, light), lights[i]);
+    }
+}
+
+void validate_word(RangeChecks& checks, const Path& where, std::string_view word, bool known,
+                   std::span<const std::string_view> words) {
+    if (!known) {
+        checks.add(where, "unknown_value",
+                   "must be " + join_words(words) + ", is " + quoted(word) +
+                       did_you_mean(nearest_word(word, words)));
+    }
+}
+
+void validate_render(RangeChecks& checks, const Path& where, const RenderSettings& render) {
+    validate_word(checks, where.key("method"), render.method,
+                  is_known_word(render.method, known_methods()), known_methods());
+    checks.between(where.key("bounces"), render.bounces, 0, checks.limits().max_bounces);
+    validate_word(checks, where.key("view"), render.view, is_known_view(render.view),
+                  known_views());
+}
+
+void validate_output(RangeChecks& checks, const Path& where, const OutputSettings& output) {
+    validate_word(checks, where.key("format"), output.format,
+                  is_known_word(output.format, known_formats()), known_formats());
+    if (output.bit_depth != 8 && output.bit_depth != 16) {
+        checks.add(where.key("bit_depth"), "unknown_value",
+                   "must be 8 or 16, is " + std::to_string(output.bit_depth));
+    }
+    const double most = checks.limits().max_exposure_ev;
+    checks.between(where.key("exposure"), output.exposure_ev, -most, most);
+    validate_word(checks, where.key("tonemap"), output.tonemap,
+                  is_known_word(output.tonemap, known_tonemaps()), known_tonemaps());
+}
+
+}  // namespace
+
+Problems validate(const Scene& scene, const Limits& limits) {
+    RangeChecks checks(limits);
+    const Path root;
+    validate_canvas(checks, root.key("canvas"), scene.canvas);
+    validate_sky(checks, root.key("sky"), scene.sky);
+    validate_shapes(checks, root.key("shapes"), scene.shapes);
+    validate_lights(checks, root.key("lights"), scene.lights);
+    validate_render(checks, root.key("render"), scene.render);
+    validate_output(checks, root.key("output"), scene.output);
+    return checks.take();
+}
+
+}  // namespace penumbra

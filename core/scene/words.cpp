@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "core/scene/words.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace penumbra {
+
+namespace {
+
+constexpr std::string_view kMethods[] = {"auto",  "rc",     "rc_fix",   "hrc",
+                                         "exact", "hybrid", "reference"};
+constexpr std::string_view kViews[] = {"final",  "distance", "cascade0",
+                                       "probes", "steps",    "normals"};
+constexpr std::string_view kFormats[] = {"png", "pfm", "exr", "hdr", "npy"};
+constexpr std::string_view kTonemaps[] = {
+    "none", "reinhard", "reinhard_extended", "aces", "agx", "pbr_neutral", "tony"};
+
+constexpr int kMaxCascade = 15;  // 4^15 pixels across: more than any canvas has
+
+}  // namespace
+
+std::span<const std::string_view> known_methods() { return kMethods; }
+std::span<const std::string_view> known_views() { return kViews; }
+std::span<const std::string_view> known_formats() { return kFormats; }
+std::span<const std::string_view> known_tonemaps() { return kTonemaps; }
+
+bool is_known_word(std::string_view word, std::span<const std::string_view> known) {
+    return std::find(known.begin(), known.end(), word) != known.end();
+}
+
+bool is_known_view(std::string_view word) {
+    constexpr std::string_view kCascade = "cascade";
+    if (!word.starts_with(kCascade)) {
+        return is_known_word(word, kViews);
+    }
+    const std::string_view digits = word.substr(kCascade.size());
+    int number = -1;
+    const auto end = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    const bool canonical = digits.size() == 1 || (digits.size() == 2 && digits[0] == '1');
+    return canonical && end.ec == std::errc() && end.ptr == digits.data() + digits.size() &&
+           number >= 0 && number <= kMaxCascade;
+}
+
+}  // namespace penumbra
