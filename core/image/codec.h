@@ -27,6 +27,7 @@ Bytes encode_pfm(const ImageF& image);
 // Why a picture could not be decoded: one sentence.
 struct DecodeError {
     std::string message;
+    bool too_large = false;  // a good file perhaps, but over the limits
 };
 
 struct DecodeLimits {

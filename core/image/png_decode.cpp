@@ -71,11 +71,13 @@ std::variant<Texels, DecodeError> decode_png(std::span<const std::uint8_t> bytes
     const auto side = std::uint32_t(std::max(limits.max_side_px, 0));
     if (header.width > side || header.height > side) {
         return DecodeError{"is " + size_text(header) + " pixels; at most " + std::to_string(side) +
-                           " on a side are allowed"};
+                               " on a side are allowed",
+                           true};
     }
     if (pixels > limits.max_pixels) {
         return DecodeError{"is " + size_text(header) + " pixels; at most " +
-                           std::to_string((long long)limits.max_pixels) + " in all are allowed"};
+                               std::to_string((long long)limits.max_pixels) + " in all are allowed",
+                           true};
     }
     // A header that promises more than the file can hold is refused before memory is taken for it.
     if (pixels * bits_per_pixel(header) / 8 > kMostInflation * double(bytes.size()) + kSlackBytes) {

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: MIT
+#include "server/json/scene_builder.h"
+
+#include <array>
+#include <limits>
+#include <string>
+
+#include "core/scene/wording.h"
+#include "server/json/bitmap_reader.h"
+#include "server/json/value_reader.h"
+
+namespace penumbra {
+
+namespace {
+
+using Keys = std::span<const std::string_view>;
+
+constexpr double kUnread = std::numeric_limits<double>::quiet_NaN();
+
+constexpr std::string_view kSceneKeys[] = {"version", "canvas", "sky",   "shapes",
+                                           "lights",  "render", "output"};
+constexpr std::string_view kCanvasKeys[] = {"width", "height", "view", "margin", "floor"};
+constexpr std::string_view kFloorKeys[] = {"albedo"};
+constexpr std::string_view kSkyKeys[] = {"radiance", "gradient"};
+constexpr std::string_view kStopKeys[] = {"angle", "radiance"};
+constexpr std::string_view kRenderKeys[] = {"method", "quality", "bounces", "skip", "view"};
+constexpr std::string_view kOutputKeys[] = {"format", "bit_depth", "antialias",
+                                            "solids", "exposure",  "tonemap"};
+
+constexpr std::string_view kShapeTypes[] = {"circle",   "ellipse", "rect",  "line",
+                                            "polyline", "polygon", "bitmap"};
+constexpr std::string_view kCircleKeys[] = {"type", "emission", "albedo", "center", "radius"};
+constexpr std::string_view kEllipseKeys[] = {"type",   "emission", "albedo",
+                                             "center", "radii",    "rotation"};
+constexpr std::string_view kRectKeys[] = {"type", "emission", "albedo",       "center",
+                                          "size", "rotation", "corner_radius"};
+constexpr std::string_view kLineKeys[] = {"type", "emission", "albedo", "from", "to", "width"};
+constexpr std::string_view kPolylineKeys[] = {"type",   "emission", "albedo",
+                                              "points", "width",    "closed"};
+constexpr std::string_view kPolygonKeys[] = {"type", "emission", "albedo", "points"};
+constexpr std::string_view kBitmapKeys[] = {"type",           "image",       "position", "size",
+                                            "emission_scale", "solid_above", "as"};
+
+constexpr std::string_view kLightTypes[] = {"point", "spot", "directional"};
+constexpr std::string_view kPointLightKeys[] = {"type", "position", "intensity"};
+constexpr std::string_view kSpotKeys[] = {"type",        "position",    "direction",
+                                          "inner_angle", "outer_angle", "intensity"};
+constexpr std::string_view kDirectionalKeys[] = {"type", "direction", "irradiance"};
+
+constexpr std::string_view kQualities[] = {"draft", "standard", "high"};
+constexpr std::string_view kSkips[] = {"all", "none"};
+constexpr std::string_view kSolids[] = {"emission", "lit"};
+constexpr std::string_view kUses[] = {"emission", "albedo"};
+
+class SceneBuilder {
+public:
+    SceneBuilder(const JsonTree& tree, const Limits& limits, ProblemList& problems)
+        : reader_(tree, problems), bitmaps_(reader_, limits) {}
+
+    Scene build() {
+        Scene scene;
+        const Path root;
+        if (!reader_.expect(root, 0, NodeKind::object, "a scene, an object in braces")) {
+            return scene;
+        }
+        const Members members(reader_, root, 0, kSceneKeys, "a scene");
+        read_version(root.key("version"), members.require("version"));
+        read_canvas(root.key("canvas"), members.require("canvas"), scene.canvas);
+        read_sky(root.key("sky"), members.find("sky"), scene.sky);
+        read_shapes(root.key("shapes"), members.find("shapes"), scene.shapes);
+        read_lights(root.key("lights"), members.find("lights"), scene.lights);
+        read_render(root.key("render"), members.find("render"), scene.render);
+        read_output(root.key("output"), members.find("output"), scene.output);
+        return scene;
+    }
+
+private:
+    bool is_object(const Path& where, NodeId id) {
+        return id != kNoNode && reader_.expect(where, id, NodeKind::object, "an object");
+    }
+
+    void read_version(const Path& where, NodeId id) {
+        if (id == kNoNode || !reader_.expect(where, id, NodeKind::number, "the number 1")) {
+            return;
+        }
+        const double version = reader_.node(id).number;
+        if (version != 1) {
+            reader_.report(where, id, "unsupported_version", [&] {
+                return "must be 1, the only version there is, is " + number_text(version);
+            });
+        }
+    }
+
+    void read_canvas(const Path& where, NodeId id, Canvas& canvas) {
+        if (!is_object(where, id)) {
+            return;
+        }
+        const Members members(reader_, where, id, kCanvasKeys, "a canvas");
+        members.need_integer("width", canvas.width);
+        members.need_integer("height", canvas.height);
+        if (const NodeId view = members.find("view"); view != kNoNode) {
+            const auto v = reader_.numbers(where.key("view"), view, 4,
+                                           "a rectangle of four numbers [x, y, width, height]");
+            canvas.view = ViewRect{v[0], v[1], v[2], v[3]};
+        }
+        members.number("margin", canvas.margin);
+        const Path floor = where.key("floor");
+        if (const NodeId floor_id = members.find("floor"); is_object(floor, floor_id)) {
+            const Members floor_members(reader_, floor, floor_id, kFloorKeys, "a floor");
+            floor_members.colour("albedo", canvas.floor_albedo);
+        }
+    }
+
+    void read_sky(const Path& where, NodeId id, Sky& sky) {
+        if (!is_object(where, id)) {
+            return;
+        }
+        const Members members(reader_, where, id, kSkyKeys, "a sky");
+        members.colour("radiance", sky.radiance);
+        const NodeId gradient = members.find("gradient");
+        if (gradient == kNoNode) {
+            return;
+        }
+        const Path list = where.key("gradient");
+        if (members.find("radiance") != kNoNode) {
+            reader_.report(list, gradient, "conflict",
+                           [] { return "must not stand together with \"radiance\": keep one"; });
+        }
+        if (!reader_.expect(list, gradient, NodeKind::array, "a list of stops")) {
+            return;
+        }
+        if (reader_.node(gradient).child_count == 0) {
+            reader_.report(list, gradient, "too_few",
+                           [] { return "must hold at least 1 stop, holds 0"; });
+        }
+        for (NodeId stop = reader_.node(gradient).first_child; stop != kNoNode;
+             stop = reader_.node(stop).next_sibling) {
+            sky.gradient.push_back(read_stop(list.index(sky.gradient.size()), stop));
+        }
+    }
+
+    SkyStop read_stop(const Path& where, NodeId id) {
+        SkyStop stop{kUnread, Colour(kUnread)};
+        if (is_object(where, id)) {
+            const Members members(reader_, where, id, kStopKeys, "a stop of the sky");
+            members.need_number("angle", stop.angle_deg);
+            members.need_colour("radiance", stop.radiance);
+        }
+        return stop;
+    }
+
+    // The type of a shape or light; without one nothing else about it can be judged.
+    std::optional<std::size_t> read_type(const Path& where, NodeId id, Keys types,
+                                         std::string_view of_what) {
+        std::optional<std::size_t> type;
+        if (reader_.expect(where, id, NodeKind::object, of_what)) {
+            const NodeId type_id = reader_.tree().child(id, "type");
+            if (type_id != kNoNode) {
+                type = reader_.choice(where.key("type"), type_id, types);
+            } else {
+                reader_.report_at(where.key("type"), reader_.node(id).offset, "missing_key",
+                                  [&] { return "is missing: it must be " + join_words(types); });
+            }
+        }
+        if (!type && !reader_.problems().full()) {
+            reader_.problems().silence(where.pointer());
+        }
+        return type;
+    }
+
+    void read_shapes(const Path& where, NodeId id, std::vector<Shape>& shapes) {
+        if (id == kNoNode || !reader_.expect(where, id, NodeKind::array, "a list of shapes")) {
+            return;
+        }
+        shapes.reserve(reader_.node(id).child_count);
+        for (NodeId shape = reader_.node(id).first_child; shape != kNoNode;
+             shape = reader_.node(shape).next_sibling) {
+            shapes.push_back(read_shape(where.index(shapes.size()), shape));
+        }
+    }
+
+    Shape read_shape(const Path& where, NodeId id) {
+        Shape shape;
+        const auto type = read_type(where, id, kShapeTypes, "a shape, an object");
+        if (!type) {
+            return shape;
+        }
+        switch (*type) {
+            case 0:
+                shape.geometry = read_circle(where, id, shape);
+                break;
+            case 1:
+                shape.geometry = read_ellipse(where, id, shape);
+                break;
+            case 2:
+                shape.geometry = read_rect(where, id, shape);
+                break;
+            case 3:
+                shape.geometry = read_line(where, id, shape);
+                break;
+            case 4:
+                shape.geometry = read_polyline(where, id, shape);
+                break;
+            case 5:
+                shape.geometry = read_polygon(where, id, shape);
+                break;
+            default:
+                shape.geometry = read_bitmap(where, id);
+                break;
+        }
+        return shape;
+    }
+
+    static void read_material(const Members& members, Shape& shape) {
+        members.colour("emission", shape.emission);
+        members.colour("albedo", shape.albedo);
+    }
+
+    Circle read_circle(const Path& where, NodeId id, Shape& shape) {
+        const Members members(reader_, where, id, kCircleKeys, "a circle");
+        Circle circle;
+        members.need_pair("center", "a point [x, y]", circle.center);
+        members.need_number("radius", circle.radius);
+        read_material(members, shape);
+        return circle;
+    }
+
+    Ellipse read_ellipse(const Path& where, NodeId id, Shape& shape) {
+        const Members members(reader_, where, id, kEllipseKeys, "an ellipse");
+        Ellipse ellipse;
+        members.need_pair("center", "a point [x, y]", ellipse.center);
+        members.need_pair("radii", "two radii [x, y]", ellipse.radii);
+        members.number("rotation", ellipse.rotation_deg);
+        read_material(members, shape);
+        return ellipse;
+    }
+
+    Rect read_rect(const Path& where, NodeId id, Shape& shape) {
+        const Members members(reader_, where, id, kRectKeys, "a rect");
+        Rect rect;
+        members.need_pair("center", "a point [x, y]", rect.center);
+        members.need_pair("size", "a size [width, height]", rect.size);
+        members.number("rotation", rect.rotation_deg);
+        members.number("corner_radius", rect.corner_radius);
+        read_material(members, shape);
+        return rect;
+    }
+
+    Line read_line(const Path& where, NodeId id, Shape& shape) {
+        const Members members(reader_, where, id, kLineKeys, "a line");
+        Line line;
+        members.need_pair("from", "a point [x, y]", line.from);
+        members.need_pair("to", "a point [x, y]", line.to);
+        members.number("width", line.width);
+        read_material(members, shape);
+        return line;
+    }
+
+    Polyline read_polyline(const Path& where, NodeId id, Shape& shape) {
+        const Members members(reader_, where, id, kPolylineKeys, "a polyline");
+        Polyline polyline;
+        members.need_points("points", polyline.points);
+        members.number("width", polyline.width);
+        members.boolean("closed", polyline.closed);
+        read_material(members, shape);
+        return polyline;
+    }
+
+    Polygon read_polygon(const Path& where, NodeId id, Shape& shape) {
+        const Members members(reader_, where, id, kPolygonKeys, "a polygon");
+        Polygon polygon;
+        members.need_points("points", polygon.points);
+        read_material(members, shape);
+        return polygon;
+    }
+
+    Bitmap read_bitmap(const Path& where, NodeId id) {
+        const Members members(reader_, where, id, kBitmapKeys, "a bitmap");
+        Bitmap bitmap;
+        if (const NodeId image = members.require("image"); image != kNoNode) {
+            bitmap.image = bitmaps_.read(where.key("image"), image);
+        }
+        members.need_pair("position", "a point [x, y]", bitmap.position);
+        members.need_pair("size", "a size [width, height]", bitmap.size);
+        members.number("emission_scale", bitmap.emission_scale);
+        members.number("solid_above", bitmap.solid_above);
+        bitmap.as_albedo = read_choice(members, where, "as", kUses).value_or(0) == 1;
+        return bitmap;
+    }
+
+    void read_lights(const Path& where, NodeId id, std::vector<Light>& lights) {
+        if (id == kNoNode || !reader_.expect(where, id, NodeKind::array, "a list of lights")) {
+            return;
+        }
+        lights.reserve(reader_.node(id).child_count);
+        for (NodeId light = reader_.node(id).first_child; light != kNoNode;
+             light = reader_.node(light).next_sibling) {
+            lights.push_back(read_light(where.index(lights.size()), light));
+        }
+    }
+
+    Light read_light(const Path& where, NodeId id) {
+        const auto type = read_type(where, id, kLightTypes, "a light, an object");
+        if (!type) {
+            return PointLight{};
+        }
+        if (*type == 0) {
+            const Members members(reader_, where, id, kPointLightKeys, "a point light");
+            PointLight light;
+            members.need_pair("position", "a point [x, y]", light.position);
+            members.need_colour("intensity", light.intensity);
+            return light;
+        }
+        if (*type == 1) {
+            const Members members(reader_, where, id, kSpotKeys, "a spot light");
+            SpotLight light;
+            members.need_pair("position", "a point [x, y]", light.position);
+            members.need_number("direction", light.direction_deg);
+            members.need_number("inner_angle", light.inner_angle_deg);
+            members.need_number("outer_angle", light.outer_angle_deg);
+            members.need_colour("intensity", light.intensity);
+            return light;
+        }
+        const Members members(reader_, where, id, kDirectionalKeys, "a directional light");
+        DirectionalLight light;
+        members.need_number("direction", light.direction_deg);
+        members.need_colour("irradiance", light.irradiance);
+        return light;
+    }
+
+    std::optional<std::size_t> read_choice(const Members& members, const Path& where,
+                                           std::string_view key, Keys words) {
+        const NodeId id = members.find(key);
+        return id == kNoNode ? std::nullopt : reader_.choice(where.key(key), id, words);
+    }
+
+    void read_render(const Path& where, NodeId id, RenderSettings& render) {
+        if (!is_object(where, id)) {
+            return;
+        }
+        const Members members(reader_, where, id, kRenderKeys, "the render settings");
+        members.string("method", render.method);
+        if (const auto quality = read_choice(members, where, "quality", kQualities)) {
+            render.quality = std::array{Quality::draft, Quality::standard, Quality::high}[*quality];
+        }
+        members.integer("bounces", render.bounces);
+        if (const auto skip = read_choice(members, where, "skip", kSkips)) {
+            render.skip = *skip == 0 ? Skip::all : Skip::none;
+        }
+        members.string("view", render.view);
+    }
+
+    void read_output(const Path& where, NodeId id, OutputSettings& output) {
+        if (!is_object(where, id)) {
+            return;
+        }
+        const Members members(reader_, where, id, kOutputKeys, "the output settings");
+        members.string("format", output.format);
+        members.integer("bit_depth", output.bit_depth);
+        members.boolean("antialias", output.antialias);
+        if (const auto solids = read_choice(members, where, "solids", kSolids)) {
+            output.solids = *solids == 0 ? Solids::emission : Solids::lit;
+        }
+        members.number("exposure", output.exposure_ev);
+        members.string("tonemap", output.tonemap);
+    }
+
+    ValueReader reader_;
+    BitmapReader bitmaps_;
+};
+
+}  // namespace
+
+Scene build_scene(const JsonTree& tree, const Limits& limits, ProblemList& problems) {
+    return SceneBuilder(tree, limits, problems).build();
+}
+
+}  // namespace penumbra
