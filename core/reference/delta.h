@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Point, spot and directional lights, with exact visibility from a finished sweep.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/reference/sweep.h"
+
+namespace penumbra::reference {
+
+class DeltaLights {
+public:
+    // `pixel_size` in world units: distances count as at least half a pixel.
+    DeltaLights(const Scene& scene, const Boundary& boundary);
+
+    bool empty() const { return lights_.empty(); }
+    // What they add to the mean radiance at `p`, given all that `p` sees.
+    Colour mean_radiance(Point p, Point forward, const std::vector<Interval>& seen) const;
+    // The irradiance at a boundary point with outward normal `forward`.
+    Colour irradiance(Point p, Point forward, const std::vector<Interval>& seen) const;
+    // A number that tells which lights reach the boundary point (equal sets, equal numbers).
+    std::uint64_t lit_set(Point p, Point forward, const std::vector<Interval>& seen) const;
+
+private:
+    struct Arrival {
+        Point direction{0};  // towards the light, a unit vector (any, where `at_light`)
+        bool at_light = false;
+        Colour strength{0};  // irradiance across the beam, shadows left out
+        double distance = 0; // infinite for directional lights
+    };
+    Arrival arrival(const Light& light, Point p) const;
+    bool is_visible(const Arrival& arrival, Point p, Point forward, const std::vector<Interval>& seen) const;
+
+    const std::vector<Light>& lights_;
+    const Boundary& boundary_;
+    double least_distance_;
+};
+
+}  // namespace penumbra::reference

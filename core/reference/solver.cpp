@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "core/reference/solver.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <numbers>
+#include <thread>
+#include <vector>
+
+#include "core/reference/boundary.h"
+#include "core/reference/delta.h"
+#include "core/reference/radiosity.h"
+#include "core/reference/sky.h"
+#include "core/reference/sweep.h"
+
+namespace penumbra::reference {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// How much of the whole work lies before and in the step that runs now.
+struct Share {
+    double before = 0, of_step = 1;
+};
+
+// Runs body(0) ... body(count - 1) on several threads, each with its own Sweep. False when cancelled.
+bool run_parallel(const Boundary& boundary, std::size_t count, const SolveOptions& options, Share share,
+                  const std::function<void(std::size_t, Sweep&)>& body) {
+    const unsigned processors = std::max(1u, std::thread::hardware_concurrency());
+    const std::size_t wanted = options.threads > 0 ? std::size_t(options.threads) : processors;
+    const std::size_t workers = std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(count, 1));
+    std::atomic<std::size_t> next{0}, finished{0};
+    std::atomic<bool> stop{false};
+    std::mutex mutex;
+    std::condition_variable done;
+    std::size_t running = workers;
+    std::exception_ptr failure;
+    const auto work = [&] {
+        try {
+            Sweep sweep(boundary);
+            for (std::size_t i = next++; i < count && !stop; i = next++) {
+                body(i, sweep);
+                ++finished;
+            }
+        } catch (...) {
+            const std::lock_guard lock(mutex);
+            failure = std::current_exception();
+            stop = true;
+        }
+        const std::lock_guard lock(mutex);
+        --running;
+        done.notify_one();
+    };
+    {
+        std::vector<std::jthread> threads;
+        for (std::size_t i = 0; i < workers; ++i) threads.emplace_back(work);
+        std::unique_lock lock(mutex);
+        while (running > 0) {
+            done.wait_for(lock, std::chrono::milliseconds(100));
+            if (!options.progress || stop) continue;
+            lock.unlock();
+            const double part = count == 0 ? 1 : double(finished) / double(count);
+            if (!options.progress(share.before + share.of_step * part)) stop = true;
+            lock.lock();
+        }
+    }
+    if (failure) std::rethrow_exception(failure);
+    return !stop;
+}
+
+bool is_bright(const SkyIntegral& sky, const Boundary& boundary) {
+    if (!sky.is_black()) return true;
+    return std::any_of(boundary.pieces().begin(), boundary.pieces().end(), [&](const Piece& piece) {
+        return boundary.material_of(piece).emission != Colour(0);
+    });
+}
+
+}  // namespace
+
+struct ExactSolver::State {
+    Scene scene;
+    SolveOptions options;
+    Boundary boundary;
+    SkyIntegral sky;
+    DeltaLights lights;
+    std::optional<Elements> elements;
+    bool cancelled = false;
+    Share pixels_share;
+    Sweep sweep;
+
+    State(const Scene& given, const SolveOptions& with)
+        : scene(given),
+          options(with),
+          boundary(scene, with.max_pieces, scene.render.bounces > 0),
+          sky(scene.sky),
+          lights(scene, boundary),
+          sweep(boundary) {
+        if (!boundary.problems().empty() || scene.render.bounces <= 0) return;
+        if (!is_bright(sky, boundary) && lights.empty()) return;
+        elements.emplace(boundary, lights, options.element_length_px * scene.canvas.pixel_size());
+        const double stride = std::max(options.stride, 1);
+        const double pixels = double(scene.canvas.width) * scene.canvas.height / (stride * stride);
+        const double gathers = double(elements->count()) * scene.render.bounces;
+        const double total = std::max(pixels + gathers, 1.0);
+        pixels_share = {gathers / total, pixels / total};
+        int round = 0;
+        cancelled = !reflect(*elements, boundary, sky, lights, scene.render.bounces,
+                             [&](std::size_t count, const std::function<void(std::size_t, Sweep&)>& body) {
+                                 const Share share{round * double(count) / total, double(count) / total};
+                                 ++round;
+                                 return run_parallel(boundary, count, options, share, body);
+                             });
+    }
+
+    Gather gather() const { return {boundary, sky, elements ? &*elements : nullptr}; }
+
+    static constexpr Point forward() { return {1, 0}; }
+
+    Colour mean_radiance(Point p, Sweep& with) const {
+        const auto& seen = with.look(p, forward(), 0, false);
+        return gather().fluence(p, seen) / (2 * std::numbers::pi);
+    }
+
+    // What a free pixel holds, and from how many intervals of direction.
+    Colour value(Point p, Sweep& with, std::size_t& intervals) const {
+        const auto& seen = with.look(p, forward(), 0, false);
+        intervals = seen.size();
+        Colour sum = gather().fluence(p, seen) / (2 * std::numbers::pi);
+        if (!lights.empty()) sum += lights.mean_radiance(p, forward(), seen);
+        return scene.canvas.floor_albedo * sum;
+    }
+};
+
+ExactSolver::ExactSolver(const Scene& scene, const SolveOptions& options)
+    : state_(std::make_unique<State>(scene, options)) {}
+ExactSolver::~ExactSolver() = default;
+ExactSolver::ExactSolver(ExactSolver&&) noexcept = default;
+ExactSolver& ExactSolver::operator=(ExactSolver&&) noexcept = default;
+
+const Problems& ExactSolver::problems() const { return state_->boundary.problems(); }
+bool ExactSolver::cancelled() const { return state_->cancelled; }
+bool ExactSolver::is_solid(Point p) const { return state_->boundary.is_solid(p); }
+Colour ExactSolver::mean_radiance(Point p) { return state_->mean_radiance(p, state_->sweep); }
+
+Colour ExactSolver::delta_radiance(Point p) {
+    const auto& seen = state_->sweep.look(p, State::forward(), 0, false);
+    return state_->lights.mean_radiance(p, State::forward(), seen);
+}
+
+Colour ExactSolver::value(Point p) {
+    std::size_t intervals = 0;
+    return state_->value(p, state_->sweep, intervals);
+}
+
+Solution solve(const Scene& scene, const SolveOptions& options) {
+    const auto start = Clock::now();
+    const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+    Solution solution;
+    const ExactSolver solver(scene, options);
+    const ExactSolver::State& state = *solver.state_;
+    solution.problems = solver.problems();
+    solution.cancelled = solver.cancelled();
+    solution.pieces = state.boundary.pieces().size();
+    solution.elements = state.elements ? state.elements->count() : 0;
+    if (!solution.problems.empty() || solution.cancelled) {
+        solution.seconds = elapsed();
+        return solution;
+    }
+    const Canvas& canvas = scene.canvas;
+    solution.image = ImageF(canvas.width, canvas.height, 3, std::numeric_limits<float>::quiet_NaN());
+    const Region region = options.region.value_or(Region{0, 0, canvas.width, canvas.height});
+    const int stride = std::max(options.stride, 1);
+    const auto solved = [&](int from, int to, int limit) {
+        std::vector<int> places;
+        for (int i = stride / 2; i < limit; i += stride) {
+            if (i >= from && i < to) places.push_back(i);
+        }
+        return places;
+    };
+    const std::vector<int> columns = solved(region.x0, region.x1, canvas.width);
+    const std::vector<int> rows = solved(region.y0, region.y1, canvas.height);
+    const ViewRect view = canvas.view_or_default();
+    std::atomic<std::uint64_t> intervals{0};
+    const bool complete = run_parallel(
+        state.boundary, rows.size(), options, state.pixels_share, [&](std::size_t row, Sweep& sweep) {
+            const int y = rows[row];
+            std::uint64_t in_row = 0;
+            for (const int x : columns) {
+                const Point p{view.x + (x + 0.5) * view.w / canvas.width, view.y + (y + 0.5) * view.h / canvas.height};
+                if (state.boundary.is_solid(p)) continue;
+                std::size_t in_pixel = 0;
+                const Colour value = state.value(p, sweep, in_pixel);
+                in_row += in_pixel;
+                float* pixel = solution.image.at(x, y);
+                for (int c = 0; c < 3; ++c) pixel[c] = float(value[c]);
+            }
+            intervals += in_row;
+        });
+    solution.cancelled = !complete;
+    solution.intervals = intervals;
+    solution.seconds = elapsed();
+    return solution;
+}
+
+Colour mean_radiance_at(const Scene& scene, Point p) { return ExactSolver(scene).mean_radiance(p); }
+
+}  // namespace penumbra::reference
