@@ -68,7 +68,7 @@ function explain(status, body) {
 
 const { scene, output, url } = readArguments();
 const text = await readScene(scene).catch((error) => stop(2, `cannot read ${scene}: ${error.code ?? error.message}`));
-const accept = output.endsWith(".pfm") ? "image/x-portable-floatmap" : "image/png";
+const accept = output.endsWith(".pfm") ? "image/x-pfm" : "image/png";
 let answer;
 try {
     answer = await fetch(`${url.replace(/\/$/, "")}/v1/render`, {

@@ -49,7 +49,7 @@ def main() -> int:
     parser.add_argument("--timeout", type=float, default=120, metavar="SECONDS")
     arguments = parser.parse_args()
 
-    accept = "image/x-portable-floatmap" if arguments.output.endswith(".pfm") else "image/png"
+    accept = "image/x-pfm" if arguments.output.endswith(".pfm") else "image/png"
     try:
         scene = sys.stdin.buffer.read() if arguments.scene == "-" else pathlib.Path(arguments.scene).read_bytes()
     except OSError as error:

@@ -38,7 +38,7 @@ done
 [[ $scene == - || -r $scene ]] || wrong "cannot read $scene"
 
 accept=image/png
-[[ $picture != *.pfm ]] || accept=image/x-portable-floatmap
+[[ $picture != *.pfm ]] || accept=image/x-pfm
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

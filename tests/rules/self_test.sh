@@ -29,7 +29,7 @@ END
     printf '#include <spng.h>\n#include "core/scene/scene.h"\n' >"$root/core/image/png.cpp"
     printf '#include <httplib.h>\nvoid f() { respond(200); wait_ms(500); sleep(404ms); }  // not 404\n' >"$root/server/http/server.cpp"
     printf 'int status = 503;\nint bad = 422;\n' >"$root/server/http/problem.cpp"
-    printf '#include <CLI/CLI.hpp>\nconst char* url = "http://a//b"; int k = 4040;\n' >"$root/server/cli/main.cpp"
+    printf '#include <CLI/CLI.hpp>\nconst char* url = "http://a//b"; int k = 4040;\nauto help = "more get 503";\n' >"$root/server/cli/main.cpp"
     cat >"$root/glsl/fill.comp" <<'END'
 #version 430 core
 // not a readonly buffer

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+# The service in a container: no X server, no GPU needed, no root.
+#
+#   docker build -t penumbra .
+#   docker run --rm -p 8080:8080 penumbra
+#   docker run --rm -p 8080:8080 --read-only --tmpfs /var/cache/penumbra --cap-drop ALL penumbra
+#
+# Debian 13 for its Mesa: llvmpipe there is several times faster on what the shaders do than Debian 12's.
+
+FROM debian:trixie-slim AS build
+WORKDIR /src
+# Packages first: they change least, and their layer is kept.
+COPY scripts/common.sh scripts/setup scripts/
+RUN scripts/setup --build-only
+COPY CMakeLists.txt CMakePresets.json ./
+COPY cmake cmake
+COPY glsl glsl
+COPY core core
+COPY server server
+RUN cmake --preset release -DPENUMBRA_BUILD_TESTS=OFF \
+    && cmake --build --preset release --target penumbra \
+    && strip build/release/penumbra
+
+FROM debian:trixie-slim
+LABEL org.opencontainers.image.title="penumbra" \
+      org.opencontainers.image.description="A headless render service for light in flatland" \
+      org.opencontainers.image.licenses="MIT"
+# Only what the program needs to run. Lists, logs and manuals are of no use here.
+RUN --mount=type=bind,source=scripts,target=/setup \
+    /setup/setup --run-only \
+    && rm -rf /var/lib/apt/lists/* /var/cache/apt/* /var/cache/debconf/* /var/log/* \
+        /usr/share/doc/* /usr/share/man/* /usr/share/locale/* \
+    && install -d -m 1777 /var/cache/penumbra
+COPY LICENSE /usr/share/doc/penumbra/LICENSE
+COPY --from=build /src/build/release/penumbra /usr/local/bin/penumbra
+
+# The one path that is written to: compiled shaders, a few hundred KB. Give it a tmpfs when the root is
+# read-only; without a writable path each start compiles anew (under a second more).
+ENV MESA_SHADER_CACHE_DIR=/var/cache/penumbra \
+    MALLOC_ARENA_MAX=2
+# Any other user id works as well.
+USER 10001:10001
+EXPOSE 8080
+HEALTHCHECK --interval=30s --timeout=5s --start-period=30s --retries=3 \
+    CMD ["penumbra", "health", "--url", "http://127.0.0.1:8080"]
+# One process without children that handles its signals: it needs no init in front.
+ENTRYPOINT ["penumbra"]
+CMD ["serve", "--host", "0.0.0.0"]
