@@ -3,11 +3,11 @@
 #pragma once
 
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "core/device_error.h"
 #include "core/image/image.h"
 #include "core/render_stats.h"
 #include "core/scene/limits.h"
@@ -15,12 +15,6 @@
 #include "core/scene/scene.h"
 
 namespace penumbra {
-
-// The world failed: no device, a shader that does not build, out of memory. Carries a full sentence.
-class DeviceError : public std::runtime_error {
-public:
-    using std::runtime_error::runtime_error;
-};
 
 struct RendererOptions {
     std::string device = "auto";  // "auto", "cpu", "gpu", or an index as `penumbra info` lists them

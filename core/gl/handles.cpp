@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "core/gl/handles.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/device_error.h"
+
+namespace penumbra::gl {
+namespace {
+
+std::size_t texel_bytes(GLenum format) {
+    switch (format) {
+        case GL_RGBA32F: return 16;
+        case GL_RGBA16F: return 8;
+        case GL_RGBA8:
+        case GL_R32F:
+        case GL_R32I:
+        case GL_RG16I: return 4;
+        default: return 0;
+    }
+}
+
+const char* error_name(GLenum error) {
+    switch (error) {
+        case GL_INVALID_ENUM: return "invalid enum";
+        case GL_INVALID_VALUE: return "invalid value";
+        case GL_INVALID_OPERATION: return "invalid operation";
+        case GL_INVALID_FRAMEBUFFER_OPERATION: return "invalid framebuffer operation";
+        case GL_OUT_OF_MEMORY: return "out of memory";
+        default: return "unknown error";
+    }
+}
+
+}  // namespace
+
+void check_errors(const char* where) {
+    const GLenum error = glGetError();
+    if (error == GL_NO_ERROR) return;
+    throw DeviceError(std::string("The device reported '") + error_name(error) + "' in " + where + ".");
+}
+
+Texture2D::Texture2D(GLenum internal_format, glm::ivec2 size, Filter filter)
+    : format_(internal_format), size_(size) {
+    glGenTextures(1, &id_);
+    glBindTexture(GL_TEXTURE_2D, id_);
+    glTexStorage2D(GL_TEXTURE_2D, 1, internal_format, size.x, size.y);
+    const GLint mode = filter == Filter::linear ? GL_LINEAR : GL_NEAREST;
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, mode);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, mode);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    const GLenum error = glGetError();
+    if (error != GL_NO_ERROR) {
+        glDeleteTextures(1, &id_);
+        id_ = 0;
+        throw DeviceError("The device has no room for a texture of " + std::to_string(size.x) + " x " +
+                          std::to_string(size.y) + " (" + std::to_string(bytes() >> 20) +
+                          " MiB): " + error_name(error) + ".");
+    }
+}
+
+Texture2D::~Texture2D() {
+    if (id_ != 0) glDeleteTextures(1, &id_);
+}
+
+std::size_t Texture2D::bytes() const {
+    return texel_bytes(format_) * static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y);
+}
+
+void Texture2D::bind_texture(int unit) const {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_2D, id_);
+}
+
+void Texture2D::bind_image(int unit, GLenum access) const {
+    glBindImageTexture(static_cast<GLuint>(unit), id_, 0, GL_FALSE, 0, access, format_);
+}
+
+void Texture2D::read(GLenum format, GLenum type, void* out) const {
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    glBindTexture(GL_TEXTURE_2D, id_);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glGetTexImage(GL_TEXTURE_2D, 0, format, type, out);
+    check_errors("reading a texture back");
+}
+
+void Texture2D::fill(GLenum format, GLenum type, const void* value) {
+    // glClearTexImage is GL 4.4; a framebuffer clear is in 4.3, but one upload row by row is simplest and
+    // this is for tests and small textures only.
+    const std::size_t texel = texel_bytes(format_);
+    std::vector<unsigned char> row(texel * static_cast<std::size_t>(size_.x));
+    for (int x = 0; x < size_.x; ++x)
+        std::copy_n(static_cast<const unsigned char*>(value), texel, row.data() + texel * static_cast<std::size_t>(x));
+    glBindTexture(GL_TEXTURE_2D, id_);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    for (int y = 0; y < size_.y; ++y) glTexSubImage2D(GL_TEXTURE_2D, 0, 0, y, size_.x, 1, format, type, row.data());
+    check_errors("filling a texture");
+}
+
+BufferTexture::BufferTexture(GLenum internal_format, const void* data, std::size_t bytes) : bytes_(bytes) {
+    // A buffer texture of no bytes is not complete: keep one texel.
+    static constexpr unsigned char kNothing[16] = {};
+    glGenBuffers(1, &buffer_);
+    glBindBuffer(GL_TEXTURE_BUFFER, buffer_);
+    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max<std::size_t>(bytes, 16)),
+                 bytes == 0 ? kNothing : data, GL_STATIC_DRAW);
+    glGenTextures(1, &id_);
+    glBindTexture(GL_TEXTURE_BUFFER, id_);
+    glTexBuffer(GL_TEXTURE_BUFFER, internal_format, buffer_);
+    const GLenum error = glGetError();
+    if (error != GL_NO_ERROR) {
+        glDeleteTextures(1, &id_);
+        glDeleteBuffers(1, &buffer_);
+        id_ = buffer_ = 0;
+        throw DeviceError("The device has no room for " + std::to_string(bytes >> 10) +
+                          " KiB of scene data: " + error_name(error) + ".");
+    }
+}
+
+BufferTexture& BufferTexture::operator=(BufferTexture&& other) noexcept {
+    Handle::operator=(std::move(other));
+    std::swap(buffer_, other.buffer_);
+    std::swap(bytes_, other.bytes_);
+    return *this;
+}
+
+BufferTexture::~BufferTexture() {
+    if (id_ != 0) glDeleteTextures(1, &id_);
+    if (buffer_ != 0) glDeleteBuffers(1, &buffer_);
+}
+
+void BufferTexture::bind_texture(int unit) const {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_BUFFER, id_);
+}
+
+UniformBuffer::UniformBuffer(std::size_t bytes) {
+    glGenBuffers(1, &id_);
+    glBindBuffer(GL_UNIFORM_BUFFER, id_);
+    glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_DRAW);
+}
+
+UniformBuffer::~UniformBuffer() {
+    if (id_ != 0) glDeleteBuffers(1, &id_);
+}
+
+void UniformBuffer::write(const void* data, std::size_t bytes) {
+    glBindBuffer(GL_UNIFORM_BUFFER, id_);
+    glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_DYNAMIC_DRAW);
+}
+
+void UniformBuffer::bind(int binding) const {
+    glBindBufferBase(GL_UNIFORM_BUFFER, static_cast<GLuint>(binding), id_);
+}
+
+}  // namespace penumbra::gl

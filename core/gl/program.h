@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// A compute program with one block of parameters, dispatched by extent in invocations.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include <glm/ext/vector_int2.hpp>
+
+#include "core/gl/handles.h"
+
+namespace penumbra::gl {
+
+class ComputeProgram : public Handle {
+public:
+    ComputeProgram() = default;
+    // Builds glsl/<name> and checks that its parameter block has `params_bytes` bytes.
+    // Throws DeviceError with "glsl/x.comp:LINE:COL: error: ..." lines.
+    ComputeProgram(const std::string& name, std::size_t params_bytes, const std::string& shader_dir = {});
+    ComputeProgram(ComputeProgram&&) noexcept = default;
+    ComputeProgram& operator=(ComputeProgram&&) noexcept = default;
+    ~ComputeProgram();
+
+    const std::string& name() const { return name_; }
+
+    // Covers `extent` invocations, the last groups in part, in bands of rows of about `slice` invocations each
+    // (0: one dispatch), so that no dispatch hogs the device. `Params::origin` is set per band.
+    // Returns the number of dispatches.
+    template <class Params>
+    int dispatch(Params params, glm::ivec2 extent, std::size_t slice = 0) {
+        int dispatches = 0;
+        const int rows = rows_per_band(extent, slice);
+        for (int y = 0; y < extent.y; y += rows) {
+            params.origin = {0, y};
+            const int height = y + rows < extent.y ? rows : extent.y - y;
+            run(&params, sizeof(Params), {extent.x, height});
+            ++dispatches;
+        }
+        return dispatches;
+    }
+
+private:
+    int rows_per_band(glm::ivec2 extent, std::size_t slice) const;
+    void run(const void* params, std::size_t bytes, glm::ivec2 extent);
+
+    std::string name_;
+    glm::ivec2 group_{1};
+    UniformBuffer params_;
+};
+
+}  // namespace penumbra::gl

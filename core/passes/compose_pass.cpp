@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "core/passes/compose_pass.h"
+
+#include <cmath>
+
+#include "glsl/compose.h"
+
+namespace penumbra {
+namespace {
+
+int tonemap_index(const std::string& name) {
+    if (name == "reinhard") return glsl::kTonemapReinhard;
+    if (name == "reinhard_extended") return glsl::kTonemapReinhardExtended;
+    if (name == "aces") return glsl::kTonemapAces;
+    if (name == "agx") return glsl::kTonemapAgx;
+    if (name == "pbr_neutral") return glsl::kTonemapPbrNeutral;
+    return glsl::kTonemapNone;
+}
+
+// The radiance that Reinhard's extended curve maps to 1 (docs/scene-format.md).
+constexpr float kReinhardWhite = 4.0f;
+
+}  // namespace
+
+ComposePass::ComposePass(const std::string& shader_dir)
+    : display_("compose.comp", sizeof(glsl::ComposeParams), shader_dir),
+      linear_("linear.comp", sizeof(glsl::ComposeParams), shader_dir) {}
+
+PassWork ComposePass::run(const Plan& plan, const Scene& scene, bool linear, const gl::Texture2D& radiance,
+                          const DistanceField& field, const Slicing& slicing, gl::Texture2D& out) {
+    out = gl::Texture2D(linear ? GL_RGBA32F : GL_RGBA8, plan.canvas);
+    glsl::ComposeParams params{};
+    params.extent = plan.canvas;
+    params.border = plan.grid.border;
+    params.antialias = scene.output.antialias ? 1 : 0;
+    params.tonemap = tonemap_index(scene.output.tonemap);
+    params.floor_albedo = glm::vec4(glm::vec3(scene.canvas.floor_albedo), 1.0f);
+    params.exposure = static_cast<float>(std::exp2(scene.output.exposure_ev));
+    params.radiance_scale = static_cast<float>(plan.radiance_scale);
+    params.white = kReinhardWhite;
+    params.has_shapes = scene.shapes.empty() ? 0 : 1;
+    radiance.bind_texture(glsl::kComposeRadianceUnit);
+    field.distance.bind_texture(glsl::kComposeDistanceUnit);
+    field.material.bind_texture(glsl::kComposeMaterialUnit);
+    out.bind_image(glsl::kComposeImageBinding, GL_WRITE_ONLY);
+    PassWork work;
+    work.dispatches = (linear ? linear_ : display_).dispatch(params, plan.canvas, slicing.pixels);
+    return work;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "core/gl/program.h"
+#include "core/passes/frame.h"
+#include "core/plan/plan.h"
+#include "core/scene/scene.h"
+
+namespace penumbra {
+
+// Reads mean radiance, distance and material, with the scene buffers bound. Writes the picture: rgba8 for
+// display (coverage, exposure, tone curve, sRGB) or rgba32f linear. One invocation per pixel.
+class ComposePass {
+public:
+    explicit ComposePass(const std::string& shader_dir);
+    PassWork run(const Plan& plan, const Scene& scene, bool linear, const gl::Texture2D& radiance,
+                 const DistanceField& field, const Slicing& slicing, gl::Texture2D& out);
+
+private:
+    gl::ComputeProgram display_;
+    gl::ComputeProgram linear_;
+};
+
+}  // namespace penumbra

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#include "core/passes/distance_pass.h"
+
+#include "glsl/distance.h"
+
+namespace penumbra {
+
+DistancePass::DistancePass(const std::string& shader_dir)
+    : program_("distance.comp", sizeof(glsl::DistanceParams), shader_dir) {}
+
+PassWork DistancePass::run(const Plan& plan, const Slicing& slicing, DistanceField& out) {
+    out.distance = gl::Texture2D(GL_R32F, plan.grid.size);
+    out.material = gl::Texture2D(GL_R32I, plan.grid.size);
+    out.distance.bind_image(glsl::kDistanceImageBinding, GL_READ_WRITE);
+    out.material.bind_image(glsl::kMaterialImageBinding, GL_READ_WRITE);
+    PassWork work;
+    glsl::DistanceParams params{};
+    params.extent = plan.grid.size;
+    params.border = plan.grid.border;
+    params.far_px = static_cast<float>(plan.grid.diagonal_px);
+    for (const ShapeSlice& slice : plan.shape_slices) {
+        params.first_shape = slice.first;
+        params.end_shape = slice.end;
+        const auto shapes = static_cast<std::size_t>(slice.end - slice.first);
+        work.dispatches += program_.dispatch(params, plan.grid.size, slicing.distance_iterations / shapes);
+        params.continues = 1;
+    }
+    return work;
+}
+
+DistanceField DistancePass::empty_field(const Plan& plan) {
+    DistanceField field{gl::Texture2D(GL_R32F, {1, 1}), gl::Texture2D(GL_R32I, {1, 1})};
+    const auto far_px = static_cast<float>(plan.grid.diagonal_px);
+    const int none = -1;
+    field.distance.fill(GL_RED, GL_FLOAT, &far_px);
+    field.material.fill(GL_RED_INTEGER, GL_INT, &none);
+    return field;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include "core/passes/resolve_pass.h"
+
+#include "glsl/resolve.h"
+
+namespace penumbra {
+
+ResolvePass::ResolvePass(const std::string& shader_dir)
+    : program_("resolve.comp", sizeof(glsl::ResolveParams), shader_dir) {}
+
+PassWork ResolvePass::run(const Plan& plan, const gl::Texture2D& cascade, const Slicing& slicing, gl::Texture2D& out) {
+    const CascadePlan& c = plan.cascades.front();
+    out = gl::Texture2D(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.canvas);
+    glsl::ResolveParams params{};
+    params.extent = plan.canvas;
+    params.probes = c.probes;
+    params.tiles = c.tiles;
+    params.texel = glm::vec2(1.0 / c.texture.x, 1.0 / c.texture.y);
+    params.first_probe = glm::vec2(c.first_probe);
+    params.spacing = static_cast<float>(c.spacing);
+    cascade.bind_texture(glsl::kResolveCascadeUnit);
+    out.bind_image(glsl::kResolveImageBinding, GL_WRITE_ONLY);
+    PassWork work;
+    work.dispatches = program_.dispatch(params, plan.canvas, slicing.pixels);
+    return work;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "core/plan/pack.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/common.hpp>
+
+#include "glsl/scene_records.h"
+
+namespace penumbra {
+namespace {
+
+using glm::dvec2;
+using glm::vec4;
+
+// Half of the shortest step of a march (glsl/lib/march.glsl): thinner, and a ray could step over it.
+constexpr double kSolidHalfThickness = 0.126;
+
+class Packer {
+public:
+    Packer(const Scene& scene, double radiance_scale) : frame_(scene.canvas), scale_(1.0 / radiance_scale) {
+        for (const Shape& shape : scene.shapes) std::visit([&](const auto& g) { add(shape, g); }, shape.geometry);
+    }
+
+    PackedScene take() { return std::move(packed_); }
+
+private:
+    void record(const Shape& shape, int type, double half_thickness, vec4 a, vec4 b) {
+        const double grow = thin_shape_growth(half_thickness);
+        const double light = half_thickness / (half_thickness + grow);
+        const Colour e = shape.emission * scale_;
+        packed_.shapes.push_back({float(type), float(grow), float(first_edge_), float(packed_.edges.size() - first_edge_)});
+        packed_.shapes.push_back({float(e.r), float(e.g), float(e.b), float(light)});
+        packed_.shapes.push_back(a);
+        packed_.shapes.push_back(b);
+        first_edge_ = packed_.edges.size();
+    }
+
+    static vec4 join(dvec2 a, dvec2 b) { return {float(a.x), float(a.y), float(b.x), float(b.y)}; }
+    static dvec2 turn(double degrees) {
+        // Quarter turns are exact, so that a scene turned by 90 degrees gives the turned picture.
+        const double quarters = degrees / 90.0;
+        if (quarters == std::floor(quarters)) {
+            const int q = static_cast<int>(std::fmod(std::fmod(quarters, 4.0) + 4.0, 4.0));
+            constexpr double kCos[] = {1, 0, -1, 0};
+            constexpr double kSin[] = {0, 1, 0, -1};
+            return {kCos[q], kSin[q]};
+        }
+        const double angle = degrees * std::numbers::pi / 180.0;
+        return {std::cos(angle), std::sin(angle)};
+    }
+
+    void add(const Shape& shape, const Circle& g) {
+        const double r = frame_.length(g.radius);
+        const dvec2 c = frame_.point(g.center);
+        record(shape, glsl::kShapeCircle, r, {float(c.x), float(c.y), float(r), 0}, vec4(0));
+    }
+
+    void add(const Shape& shape, const Ellipse& g) {
+        const dvec2 radii = g.radii * frame_.pixels_per_unit;
+        record(shape, glsl::kShapeEllipse, std::min(radii.x, radii.y), join(frame_.point(g.center), radii),
+               join(turn(g.rotation_deg), dvec2(0)));
+    }
+
+    void add(const Shape& shape, const Rect& g) {
+        const dvec2 half = 0.5 * g.size * frame_.pixels_per_unit;
+        record(shape, glsl::kShapeRect, std::min(half.x, half.y), join(frame_.point(g.center), half),
+               join(turn(g.rotation_deg), dvec2(frame_.length(g.corner_radius), 0)));
+    }
+
+    void add(const Shape& shape, const Line& g) {
+        const double half = 0.5 * frame_.length(g.width);
+        record(shape, glsl::kShapeLine, half, join(frame_.point(g.from), frame_.point(g.to)), {0, 0, float(half), 0});
+    }
+
+    void add(const Shape& shape, const Polyline& g) {
+        const vec4 box = add_edges(g.points, g.closed);
+        const double half = 0.5 * frame_.length(g.width);
+        record(shape, glsl::kShapePolyline, half, box, {0, 0, float(half), 0});
+    }
+
+    void add(const Shape& shape, const Polygon& g) {
+        const vec4 box = add_edges(g.points, true);
+        // How thick a polygon is where it is thinnest is not known: it is marched as it is.
+        record(shape, glsl::kShapePolygon, kSolidHalfThickness, box, vec4(0));
+    }
+
+    void add(const Shape& shape, const Bitmap& g) {
+        const std::size_t first = packed_.texels.size();
+        const Texels& image = *g.image;
+        const std::size_t count = image.rgba.size() / 4;
+        packed_.texels.reserve(first + count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::uint8_t* t = &image.rgba[4 * i];
+            packed_.texels.push_back(std::uint32_t(t[0]) | std::uint32_t(t[1]) << 8 | std::uint32_t(t[2]) << 16 |
+                                     std::uint32_t(t[3]) << 24);
+        }
+        // Half way between the last alpha that is free and the first that is solid.
+        const double threshold = (std::ceil(g.solid_above * 255.0 - 1e-9) - 0.5) / 255.0;
+        record(shape, glsl::kShapeBitmap, kSolidHalfThickness,
+               join(frame_.point(g.position), g.size * frame_.pixels_per_unit),
+               {float(first), float(image.width), float(image.height), float(threshold)});
+        packed_.shapes[packed_.shapes.size() - 3].w = float(g.as_albedo ? 0.0 : g.emission_scale * scale_);
+    }
+
+    vec4 add_edges(const std::vector<Point>& points, bool closed) {
+        dvec2 lo(1e300);
+        dvec2 hi(-1e300);
+        const auto edge = [&](Point from, Point to) {
+            const dvec2 a = frame_.point(from);
+            const dvec2 b = frame_.point(to);
+            packed_.edges.push_back(join(a, b));
+            lo = glm::min(lo, glm::min(a, b));
+            hi = glm::max(hi, glm::max(a, b));
+        };
+        if (points.size() == 1) edge(points[0], points[0]);
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) edge(points[i], points[i + 1]);
+        if (closed && points.size() > 1) edge(points.back(), points.front());
+        return join(lo, hi);
+    }
+
+    PixelFrame frame_;
+    double scale_;
+    std::size_t first_edge_ = 0;  // of the shape being packed
+    PackedScene packed_;
+};
+
+}  // namespace
+
+PixelFrame::PixelFrame(const Canvas& canvas) {
+    const ViewRect view = canvas.view_or_default();
+    origin = {view.x, view.y};
+    pixels_per_unit = canvas.width / view.w;
+}
+
+double thin_shape_growth(double half_thickness_px) { return std::max(0.0, kSolidHalfThickness - half_thickness_px); }
+
+std::size_t edge_count(const Shape& shape) {
+    if (const auto* line = std::get_if<Polyline>(&shape.geometry))
+        return line->points.size() <= 1 ? 1 : line->points.size() - (line->closed ? 0 : 1);
+    if (const auto* polygon = std::get_if<Polygon>(&shape.geometry)) return polygon->points.size();
+    return 0;
+}
+
+PackedScene pack_scene(const Scene& scene, double radiance_scale) { return Packer(scene, radiance_scale).take(); }
+
+}  // namespace penumbra

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "core/plan/plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/device_error.h"
+#include "core/plan/pack.h"
+#include "core/plan/sky.h"
+
+namespace penumbra {
+namespace {
+
+// Iterations that one dispatch of the distance pass may spend on shapes and edges: half of what Mesa 22
+// allows an invocation, since the loop over shapes contains the loop over edges.
+constexpr std::size_t kIterationsPerSlice = 30000;
+
+// Above this, cascades are kept in half floats: two 4096 x 4096 textures in full floats are 512 MiB.
+constexpr std::size_t kFullFloatBytes = std::size_t(320) << 20;
+
+double brightest_emission(const Shape& shape) {
+    if (const auto* bitmap = std::get_if<Bitmap>(&shape.geometry)) return bitmap->as_albedo ? 0.0 : bitmap->emission_scale;
+    return std::max({shape.emission.r, shape.emission.g, shape.emission.b});
+}
+
+std::vector<ShapeSlice> slice_shapes(const std::vector<Shape>& shapes) {
+    std::vector<ShapeSlice> slices;
+    std::size_t spent = 0;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const std::size_t cost = 1 + edge_count(shapes[i]);
+        if (slices.empty() || spent + cost > kIterationsPerSlice) {
+            slices.push_back({static_cast<int>(i), static_cast<int>(i)});
+            spent = 0;
+        }
+        spent += cost;
+        slices.back().end = static_cast<int>(i) + 1;
+    }
+    return slices;
+}
+
+std::size_t area(glm::ivec2 size) { return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y); }
+
+void check_size(glm::ivec2 size, std::size_t texel_bytes, const DeviceLimits& limits, const char* what) {
+    if (std::max(size.x, size.y) <= limits.max_texture_side && area(size) * texel_bytes <= limits.max_texture_bytes) return;
+    throw DeviceError("The picture is too large for this device: its " + std::string(what) + " needs a texture of " +
+                      std::to_string(size.x) + " x " + std::to_string(size.y) + ".");
+}
+
+}  // namespace
+
+CascadeSettings cascade_settings(Quality quality) {
+    // Points of the measured front of rc (docs/benchmarks.md).
+    switch (quality) {
+        case Quality::draft: return {2.0, 1.2, 1};
+        case Quality::standard: return {1.0, 1.2, 1};
+        case Quality::high: return {0.5, 1.2, 1};
+    }
+    return {};
+}
+
+std::vector<CascadePlan> plan_cascades(glm::ivec2 canvas, double diagonal_px, const CascadeSettings& settings) {
+    const double ratio = 1.0 + 3.0 * diagonal_px / settings.interval_px;
+    // The tolerance keeps an exact power of four from growing a cascade by rounding.
+    const int count = std::max(1, static_cast<int>(std::ceil(std::log2(ratio) / 2.0 - 1e-12)));
+    std::vector<CascadePlan> cascades;
+    int sky_first = 0;
+    for (int level = 0; level < count; ++level) {
+        CascadePlan c;
+        c.level = level;
+        c.spacing = std::ldexp(settings.spacing_px, level);
+        const auto along = [&](int pixels) { return std::max(1, static_cast<int>(std::ceil(pixels / c.spacing))); };
+        c.probes = {along(canvas.x), along(canvas.y)};
+        c.first_probe = 0.5 * (glm::dvec2(canvas) - glm::dvec2(c.probes - 1) * c.spacing);
+        const int tiles = settings.base_tiles << level;
+        c.tiles = {tiles, tiles};
+        c.texture = c.probes * c.tiles;
+        c.start = settings.interval_px * (std::ldexp(1.0, 2 * level) - 1.0) / 3.0;
+        c.end = c.start + std::ldexp(settings.interval_px, 2 * level);
+        c.sky_first = sky_first;
+        sky_first += c.directions();
+        cascades.push_back(c);
+    }
+    return cascades;
+}
+
+std::vector<int> plan_jumps(glm::ivec2 grid) {
+    std::vector<int> steps;
+    int step = 1;
+    while (step * 2 < std::max(grid.x, grid.y)) step *= 2;
+    for (; step >= 1; step /= 2) steps.push_back(step);
+    steps.push_back(1);
+    steps.push_back(1);
+    return steps;
+}
+
+GridPlan plan_grid(const Canvas& canvas) {
+    GridPlan grid;
+    const double margin_px = canvas.margin / canvas.pixel_size();
+    const int border = static_cast<int>(std::ceil(margin_px));
+    grid.border = {border, border};
+    grid.size = glm::ivec2(canvas.width, canvas.height) + 2 * grid.border;
+    grid.domain = {-margin_px, -margin_px, canvas.width + margin_px, canvas.height + margin_px};
+    grid.diagonal_px = std::hypot(canvas.width + 2 * margin_px, canvas.height + 2 * margin_px);
+    return grid;
+}
+
+Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
+    Plan plan;
+    plan.canvas = {scene.canvas.width, scene.canvas.height};
+    plan.grid = plan_grid(scene.canvas);
+    plan.method = "rc";
+    plan.method_reason = scene.render.method == "auto" ? "the only method of this version" : "asked for";
+
+    double peak = brightest(scene.sky);
+    bool has_bitmaps = false;
+    for (const Shape& shape : scene.shapes) {
+        peak = std::max(peak, brightest_emission(shape));
+        has_bitmaps = has_bitmaps || std::holds_alternative<Bitmap>(shape.geometry);
+    }
+
+    if (scene.shapes.empty()) {
+        plan.skipped.push_back({"distance pass", "the scene has no shapes: every distance is the diagonal", double(area(plan.grid.size))});
+    }
+    plan.shape_slices = slice_shapes(scene.shapes);
+    if (has_bitmaps)
+        plan.jump_steps = plan_jumps(plan.grid.size);
+    else
+        plan.skipped.push_back({"jump flooding", "the scene has no bitmaps", double(area(plan.grid.size)) * double(plan_jumps(plan.grid.size).size())});
+
+    const CascadeSettings settings = cascade_settings(scene.render.quality);
+    plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
+    if (peak <= 0) {
+        plan.skipped.push_back({"cascades", "nothing emits light", double(area(plan.canvas)) * double(plan.cascades.size())});
+        plan.cascades.clear();
+    }
+    plan.resolve = !plan.cascades.empty() && (settings.spacing_px != 1.0 || settings.base_tiles != 1);
+    if (!plan.resolve && !plan.cascades.empty())
+        plan.skipped.push_back({"resolve", "cascade 0 is the mean radiance of each pixel", double(area(plan.canvas))});
+
+    std::size_t largest_area = area(plan.canvas);
+    for (const CascadePlan& c : plan.cascades) largest_area = std::max(largest_area, area(c.texture));
+    plan.half_floats = largest_area * 16 > kFullFloatBytes;
+    if (plan.half_floats) plan.radiance_scale = peak > 0 ? peak : 1.0;
+    const std::size_t texel = plan.half_floats ? 8 : 16;
+    check_size(plan.grid.size, 4, limits, "distance field");
+    for (const CascadePlan& c : plan.cascades) check_size(c.texture, texel, limits, "cascade");
+
+    plan.gpu_bytes = 8 * area(plan.grid.size) + 4 * area(plan.canvas);
+    if (has_bitmaps) plan.gpu_bytes += 8 * area(plan.grid.size);
+    if (!plan.cascades.empty()) plan.gpu_bytes += 2 * largest_area * texel;
+    if (plan.resolve) plan.gpu_bytes += area(plan.canvas) * texel;
+    return plan;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// Scene and device limits in; which passes run, at what size, and what is left out. Pure arithmetic.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <glm/ext/vector_int2.hpp>
+#include <glm/vec2.hpp>
+
+#include "core/plan/device_limits.h"
+#include "core/render_stats.h"
+#include "core/scene/scene.h"
+
+namespace penumbra {
+
+// A box in pixels of the view: (0, 0) is the view's top left corner.
+struct PixelBox {
+    double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+// The grid of the distance field: the view and its margin, in whole pixels.
+struct GridPlan {
+    glm::ivec2 size{0};
+    glm::ivec2 border{0};  // grid pixels left of and above the view
+    PixelBox domain;       // exact, the grid rounds outwards
+    double diagonal_px = 0;
+};
+
+// Base-4 radiance cascades (docs/methods/rc.md): cascade c has `groups` times four directions per probe.
+struct CascadePlan {
+    int level = 0;
+    glm::ivec2 probes{0};
+    glm::ivec2 tiles{0};         // direction groups along x and y of the texture
+    glm::ivec2 texture{0};       // probes * tiles
+    double spacing = 0;          // px
+    glm::dvec2 first_probe{0};   // centre, px; the probe grid is centred on the view
+    double start = 0, end = 0;   // interval along the ray, px
+    int sky_first = 0;           // first of its directions in the sky table
+    int directions() const { return 4 * tiles.x * tiles.y; }
+};
+
+// A run of shapes whose edges one dispatch of the distance pass can walk.
+struct ShapeSlice {
+    int first = 0;
+    int end = 0;
+};
+
+struct Plan {
+    std::string method;
+    std::string method_reason;
+    glm::ivec2 canvas{0};
+    GridPlan grid;
+    std::vector<ShapeSlice> shape_slices;
+    std::vector<int> jump_steps;        // of jump flooding, empty without bitmaps
+    std::vector<CascadePlan> cascades;  // [0] is the nearest; empty when no light can arrive
+    bool resolve = false;               // false: cascade 0 already is the mean radiance per pixel
+    bool half_floats = false;           // cascades in 16 bits, emission scaled to [0, 1]
+    double radiance_scale = 1;          // emission is divided by this before it is packed
+    std::size_t gpu_bytes = 0;          // of textures, the packed scene left out
+    std::vector<SkippedWork> skipped;
+};
+
+// How finely `rc` samples: a point on its time/error curve.
+struct CascadeSettings {
+    double spacing_px = 1;    // of cascade 0's probes
+    double interval_px = 1;   // length of cascade 0's interval
+    int base_tiles = 1;       // direction groups of cascade 0 along each axis: 4 * base_tiles^2 rays
+};
+CascadeSettings cascade_settings(Quality quality);
+
+// The cascades that cover a domain of this diagonal. n = ceil(log4(1 + 3 D / t0)): errata E-3, E-10.
+std::vector<CascadePlan> plan_cascades(glm::ivec2 canvas, double diagonal_px, const CascadeSettings& settings);
+
+// Steps of jump flooding over a grid: halving from the largest power of two below its longer side to 1, then
+// twice 1 more (JFA+2: plain flooding is wrong at a few pixels).
+std::vector<int> plan_jumps(glm::ivec2 grid);
+
+GridPlan plan_grid(const Canvas& canvas);
+
+// Precondition: validate(scene) and unsupported(scene) are empty.
+// Throws DeviceError when the device cannot hold the picture.
+Plan make_plan(const Scene& scene, const DeviceLimits& limits);
+
+}  // namespace penumbra

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+#include "core/renderer.h"
+
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <thread>
+
+#include "core/gl/context.h"
+#include "core/gl/timer.h"
+#include "core/passes/cascade_pass.h"
+#include "core/passes/compose_pass.h"
+#include "core/passes/distance_pass.h"
+#include "core/passes/jump_flood_pass.h"
+#include "core/passes/resolve_pass.h"
+#include "core/passes/scene_buffers.h"
+#include "core/plan/plan.h"
+
+namespace penumbra {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Records each pass's time and size while the frame runs.
+class Recorder {
+public:
+    explicit Recorder(gl::PassTimer& timer) : timer_(timer) {}
+
+    template <class Run>
+    void pass(std::string name, glm::ivec2 extent, Run&& run) {
+        const Clock::time_point start = Clock::now();
+        timer_.mark();
+        const PassWork work = run();
+        timer_.mark();
+        gl::check_errors(name.c_str());
+        PassStats stats;
+        stats.name = std::move(name);
+        stats.wall_ms = ms_since(start);
+        stats.width = extent.x;
+        stats.height = extent.y;
+        stats.dispatches = static_cast<std::uint64_t>(work.dispatches);
+        stats.rays = work.rays;
+        passes_.push_back(std::move(stats));
+    }
+
+    std::vector<PassStats> finish() {
+        const std::vector<double> device_ms = timer_.read();
+        for (std::size_t i = 0; i < passes_.size() && i < device_ms.size(); ++i) passes_[i].gpu_ms = device_ms[i];
+        return std::move(passes_);
+    }
+
+private:
+    gl::PassTimer& timer_;
+    std::vector<PassStats> passes_;
+};
+
+}  // namespace
+
+struct Renderer::Impl {
+    explicit Impl(const RendererOptions& options)
+        : context(options.device),
+          distance(options.shader_dir),
+          jump_flood(options.shader_dir),
+          cascade(options.shader_dir),
+          resolve(options.shader_dir),
+          compose(options.shader_dir) {
+        const gl::ContextInfo& gl_info = context.info();
+        info.kind = gl_info.software ? "cpu" : "gpu";
+        info.platform = gl_info.platform;
+        info.vendor = gl_info.vendor;
+        info.renderer = gl_info.renderer;
+        info.gl_version = gl_info.gl_version;
+        info.glsl_version = gl_info.glsl_version;
+        info.max_texture_side = gl_info.max_texture_side;
+        info.max_texture_buffer_texels = gl_info.max_texture_buffer_texels;
+        info.max_group_invocations = gl_info.max_group_invocations;
+        limits.max_texture_side = gl_info.max_texture_side;
+        limits.max_buffer_texels = static_cast<std::size_t>(gl_info.max_texture_buffer_texels);
+        limits.software = gl_info.software;
+        if (!gl_info.software) limits.max_texture_bytes = std::size_t(8) << 30;
+        // About 10 ms a dispatch on two cores of llvmpipe; a GPU takes a hundred times that.
+        const std::size_t factor = gl_info.software ? 1 : 128;
+        slicing = {factor * 6'000'000, factor * 300'000, factor * 1'000'000};
+    }
+
+    RenderResult render(const Scene& scene);
+    std::variant<Image8, ImageF> read_back(const gl::Texture2D& picture, bool linear);
+    void check_thread() const {
+        if (std::this_thread::get_id() != thread)
+            throw DeviceError("The renderer was used on another thread than the one that made it.");
+    }
+
+    std::thread::id thread = std::this_thread::get_id();
+    gl::Context context;
+    gl::PassTimer timer;
+    DistancePass distance;
+    JumpFloodPass jump_flood;
+    CascadePass cascade;
+    ResolvePass resolve;
+    ComposePass compose;
+    DeviceInfo info;
+    DeviceLimits limits;
+    Slicing slicing;
+};
+
+// The frame, in the order in which it happens.
+RenderResult Renderer::Impl::render(const Scene& scene) {
+    const Clock::time_point start = Clock::now();
+    const bool linear = scene.output.format != "png";
+    const Plan plan = make_plan(scene, limits);
+    const SceneBuffers buffers(pack_scene(scene, plan.radiance_scale), scene.sky, plan);
+    buffers.bind();
+    Recorder record(timer);
+
+    DistanceField field;
+    if (plan.shape_slices.empty())
+        field = DistancePass::empty_field(plan);
+    else
+        record.pass("distance", plan.grid.size, [&] { return distance.run(plan, slicing, field); });
+    if (!plan.jump_steps.empty())
+        record.pass("jump flood", plan.grid.size, [&] { return jump_flood.run(plan, slicing, field); });
+
+    gl::Texture2D radiance;
+    for (std::size_t level = plan.cascades.size(); level-- > 0;) {
+        gl::Texture2D merged;
+        record.pass("cascade " + std::to_string(level), plan.cascades[level].texture, [&] {
+            return cascade.run(plan, level, scene.sky, buffers, field, radiance ? &radiance : nullptr, slicing, merged);
+        });
+        radiance = std::move(merged);
+    }
+    if (plan.resolve)
+        record.pass("resolve", plan.canvas, [&] {
+            gl::Texture2D resolved;
+            const PassWork work = resolve.run(plan, radiance, slicing, resolved);
+            radiance = std::move(resolved);
+            return work;
+        });
+    if (!radiance) {
+        // No light at all: one black texel stands for every pixel.
+        const float black[4] = {};
+        radiance = gl::Texture2D(GL_RGBA32F, {1, 1});
+        radiance.fill(GL_RGBA, GL_FLOAT, black);
+    }
+
+    gl::Texture2D picture;
+    record.pass("compose", plan.canvas,
+                [&] { return compose.run(plan, scene, linear, radiance, field, slicing, picture); });
+
+    const Clock::time_point read_start = Clock::now();
+    RenderResult result;
+    result.picture = read_back(picture, linear);
+    PassStats read;
+    read.name = "read";
+    read.wall_ms = ms_since(read_start);
+    read.width = plan.canvas.x;
+    read.height = plan.canvas.y;
+
+    RenderStats& stats = result.stats;
+    stats.passes = record.finish();
+    stats.passes.push_back(read);
+    stats.device = info.renderer;
+    stats.method = plan.method;
+    stats.method_reason = plan.method_reason;
+    stats.width = plan.canvas.x;
+    stats.height = plan.canvas.y;
+    stats.gpu_bytes = plan.gpu_bytes + buffers.bytes();
+    stats.skipped = plan.skipped;
+    stats.total_ms = ms_since(start);
+    return result;
+}
+
+std::variant<Image8, ImageF> Renderer::Impl::read_back(const gl::Texture2D& picture, bool linear) {
+    const glm::ivec2 size = picture.size();
+    const auto drop_alpha = [&](auto& rgba, auto& rgb) {
+        const std::size_t count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t c = 0; c < 3; ++c) rgb.data[3 * i + c] = rgba.data[4 * i + c];
+    };
+    if (linear) {
+        ImageF rgba(size.x, size.y, 4);
+        ImageF rgb(size.x, size.y, 3);
+        picture.read(GL_RGBA, GL_FLOAT, rgba.data.data());
+        drop_alpha(rgba, rgb);
+        return rgb;
+    }
+    Image8 rgba(size.x, size.y, 4);
+    Image8 rgb(size.x, size.y, 3);
+    picture.read(GL_RGBA, GL_UNSIGNED_BYTE, rgba.data.data());
+    drop_alpha(rgba, rgb);
+    return rgb;
+}
+
+Renderer::Renderer(const RendererOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+
+Renderer::~Renderer() = default;
+
+const DeviceInfo& Renderer::device() const { return impl_->info; }
+
+RenderResult Renderer::render(const Scene& scene) {
+    impl_->check_thread();
+    return impl_->render(scene);
+}
+
+std::string Renderer::self_test() {
+    // A lamp of radiance 1 under a grey sky: far from the lamp its share is asin(R / r) / pi.
+    Scene scene;
+    scene.canvas.width = 48;
+    scene.canvas.height = 48;
+    scene.sky.radiance = Colour(0.25);
+    scene.output.format = "pfm";
+    const ImageF open = std::get<ImageF>(render(scene).picture);
+    for (const float value : open.data)
+        if (!(std::abs(value - 0.25f) < 1e-4f))
+            return "A uniform sky of radiance 0.25 rendered as " + std::to_string(value) + ".";
+    Shape lamp;
+    lamp.geometry = Circle{{24, 24}, 6};
+    lamp.emission = Colour(1);
+    scene.shapes.push_back(lamp);
+    const ImageF lit = std::get<ImageF>(render(scene).picture);
+    double mean = 0;
+    double expected = 0;
+    for (int x = 0; x < 48; ++x) {
+        const double distance = std::hypot(x + 0.5 - 24.0, 0.5 - 24.0);
+        const double share = std::asin(6.0 / distance) / std::numbers::pi;
+        mean += double(*lit.at(x, 0)) / 48;
+        expected += (share + 0.25 * (1 - share)) / 48;
+    }
+    if (!(std::abs(mean / expected - 1) < 0.05))
+        return "A disc under a grey sky rendered as " + std::to_string(mean) + " instead of " + std::to_string(expected) + ".";
+    return {};
+}
+
+std::vector<DeviceListing> Renderer::list_devices() {
+    std::vector<DeviceListing> result;
+    for (const gl::EglDeviceListing& device : gl::Context::list_devices())
+        result.push_back({device.index, device.name, device.software});
+    return result;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,49 @@
+#ifndef PENUMBRA_GLSL_CASCADE_H
+#define PENUMBRA_GLSL_CASCADE_H
+#include "types.h"
+#ifdef __cplusplus
+namespace penumbra::glsl {
+#endif
+
+const int kCascadeGroupX = 64;  // Mesa 22 vectorises along x only
+const int kCascadeGroupY = 1;
+const int kCascadeParamsBinding = 0;
+const int kCascadeImageBinding = 0;
+const int kCascadeDistanceUnit = 4;  // r32f
+const int kCascadeMaterialUnit = 5;  // r32i
+const int kCascadeUpperUnit = 6;     // rgba, linear filter, the cascade above
+
+// Steps of one interval. Each step is at least a pixel, so only a ray that grazes a surface for longer
+// than this runs out, and is then blocked (errata E-5). Four rays stay under the 65535 iterations after
+// which Mesa 22 ends every loop.
+const int kMaxMarchSteps = 16000;
+
+struct CascadeParams {
+    ivec2 origin;       // first texel of this slice
+    ivec2 extent;       // texture size: probes * tiles
+    ivec2 probes;       // probe grid
+    ivec2 upper_probes; // of the cascade above
+    ivec2 border;       // grid pixels left of and above the view
+    ivec2 tiles;        // direction groups along x and y
+    ivec2 upper_tiles;
+    vec2 upper_texel;   // 1 / size of the texture above
+    vec2 first_probe;   // centre of probe (0, 0), pixels of the view
+    vec2 upper_first;   // centre of the upper probe (0, 0)
+    vec4 domain;        // x0 y0 x1 y1, pixels of the view
+    vec4 offset_cos;    // cosines of the four rays' angles from their group's centre
+    vec4 offset_sin;
+    vec4 sky;           // constant sky radiance
+    float spacing;      // between probes, px
+    float upper_spacing;
+    float start;        // interval along the ray, px
+    float end;
+    float group_angle;  // 2 pi / direction groups
+    int is_last;        // nothing above: the sky ends the ray
+    int sky_first;      // first sector of this cascade in the sky table, -1: constant sky
+    int pad0;
+};
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,41 @@
+// Reads mean radiance, distance and material; writes the picture for display: coverage at edges, exposure,
+// tone curve, sRGB. One thread is one pixel.
+#version 430 core
+#include "compose.h"
+layout(std140, binding = kComposeParamsBinding) uniform Params { ComposeParams params; };
+#include "lib/pixel.glsl"
+#include "lib/tonemap.glsl"
+
+layout(local_size_x = kComposeGroupX, local_size_y = kComposeGroupY) in;
+layout(rgba8, binding = kComposeImageBinding) writeonly uniform image2D picture_image;
+
+// The floor beside a solid edge pixel: the mean of its free neighbours. The pixel's own probe sits inside
+// the shape, and would leak its light or its dark into the edge.
+vec3 floor_beside(ivec2 pixel) {
+    vec4 sum = vec4(0.0);
+    for (int y = -1; y <= 1; ++y) {
+        for (int x = -1; x <= 1; ++x) {
+            ivec2 at = clamp(pixel + ivec2(x, y), ivec2(0), params.extent - 1);
+            if (pixel_distance(at) > 0.0) sum += vec4(floor_radiance(at), 1.0);
+        }
+    }
+    return sum.a > 0.0 ? sum.rgb / sum.a : solid_radiance(pixel);
+}
+
+vec3 pixel_radiance(ivec2 pixel) {
+    if (params.has_shapes == 0) return floor_radiance(pixel);
+    float d = pixel_distance(pixel);
+    bool solid = d <= 0.0;
+    float coverage = params.antialias != 0 ? clamp(0.5 - d, 0.0, 1.0) : (solid ? 1.0 : 0.0);
+    if (coverage >= 1.0) return solid_radiance(pixel);
+    vec3 free = solid ? floor_beside(pixel) : floor_radiance(pixel);
+    return coverage <= 0.0 ? free : mix(free, solid_radiance(pixel), coverage);
+}
+
+void main() {
+    ivec2 pixel = params.origin + ivec2(gl_GlobalInvocationID.xy);
+    if (pixel.x >= params.extent.x || pixel.y >= params.extent.y) return;
+    vec3 radiance = max(pixel_radiance(pixel) * params.exposure, vec3(0.0));
+    vec3 encoded = srgb_encode(clamp(tonemap(radiance, params.tonemap, params.white), 0.0, 1.0));
+    imageStore(picture_image, pixel, vec4(encoded, 1.0));
+}

@@ -1,0 +1,20 @@
+// What a pixel holds (docs/methods/light-transport.md): floor times mean radiance where free, the topmost
+// shape's emission where solid.
+#include "lib/scene.glsl"
+
+layout(binding = kComposeRadianceUnit) uniform sampler2D radiance_texture;
+layout(binding = kComposeDistanceUnit) uniform sampler2D distance_texture;
+layout(binding = kComposeMaterialUnit) uniform isampler2D material_texture;
+
+float pixel_distance(ivec2 pixel) { return texelFetch(distance_texture, pixel + params.border, 0).r; }
+
+vec3 floor_radiance(ivec2 pixel) {
+    // A scene without light has a texture of one black texel.
+    ivec2 at = min(pixel, textureSize(radiance_texture, 0) - 1);
+    return params.floor_albedo.rgb * texelFetch(radiance_texture, at, 0).rgb * params.radiance_scale;
+}
+
+vec3 solid_radiance(ivec2 pixel) {
+    int shape = texelFetch(material_texture, pixel + params.border, 0).r;
+    return shape < 0 ? vec3(0.0) : shape_emission(shape, vec2(pixel) + 0.5) * params.radiance_scale;
+}

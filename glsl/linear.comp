@@ -1,0 +1,16 @@
+// Reads mean radiance, distance and material; writes the linear picture at pixel centres, never
+// antialiased. One thread is one pixel.
+#version 430 core
+#include "compose.h"
+layout(std140, binding = kComposeParamsBinding) uniform Params { ComposeParams params; };
+#include "lib/pixel.glsl"
+
+layout(local_size_x = kComposeGroupX, local_size_y = kComposeGroupY) in;
+layout(rgba32f, binding = kComposeImageBinding) writeonly uniform image2D linear_image;
+
+void main() {
+    ivec2 pixel = params.origin + ivec2(gl_GlobalInvocationID.xy);
+    if (pixel.x >= params.extent.x || pixel.y >= params.extent.y) return;
+    bool solid = params.has_shapes != 0 && pixel_distance(pixel) <= 0.0;
+    imageStore(linear_image, pixel, vec4(solid ? solid_radiance(pixel) : floor_radiance(pixel), 1.0));
+}

@@ -1,0 +1,30 @@
+#ifndef PENUMBRA_GLSL_RESOLVE_H
+#define PENUMBRA_GLSL_RESOLVE_H
+#include "types.h"
+#ifdef __cplusplus
+namespace penumbra::glsl {
+#endif
+
+const int kResolveGroupX = 64;
+const int kResolveGroupY = 1;
+const int kResolveParamsBinding = 0;
+const int kResolveImageBinding = 0;
+const int kResolveCascadeUnit = 6;
+
+struct ResolveParams {
+    ivec2 origin;
+    ivec2 extent;      // canvas
+    ivec2 probes;      // of cascade 0
+    ivec2 tiles;       // direction groups of cascade 0
+    vec2 texel;        // 1 / texture size
+    vec2 first_probe;  // px
+    float spacing;     // px
+    int pad0;
+    int pad1;
+    int pad2;
+};
+
+#ifdef __cplusplus
+}
+#endif
+#endif
