@@ -9,9 +9,9 @@
 
 #include "core/device_error.h"
 #include "core/image/image.h"
+#include "core/plan/support.h"
 #include "core/render_stats.h"
 #include "core/scene/limits.h"
-#include "core/scene/problem.h"
 #include "core/scene/scene.h"
 
 namespace penumbra {
@@ -43,10 +43,6 @@ struct RenderResult {
     std::variant<Image8, ImageF> picture;
     RenderStats stats;
 };
-
-// Features of the format that this build does not render yet, each a problem with code
-// "not_supported_yet" that names its key. Nothing that parses is silently ignored.
-Problems unsupported(const Scene& scene);
 
 // Owns the one GL context. Create, use and destroy it on the same thread (checked).
 class Renderer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/renderer.h"
+#include "core/plan/support.h"
 
 namespace penumbra {
 
