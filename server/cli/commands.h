@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "server/cli/cli.h"
+
+namespace penumbra {
+
+void add_render_command(CLI::App& app, CommandContext& context);
+void add_serve_command(CLI::App& app, CommandContext& context);
+void add_validate_command(CLI::App& app, CommandContext& context);
+void add_info_command(CLI::App& app, CommandContext& context);
+void add_health_command(CLI::App& app, CommandContext& context);
+
+}  // namespace penumbra

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// penumbra serve: the service, until a signal ends it.
+#include <pthread.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <ctime>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "server/cli/commands.h"
+#include "server/cli/config_options.h"
+#include "server/cli/files.h"
+#include "server/http/http_server.h"
+#include "server/service/version.h"
+
+namespace penumbra {
+namespace {
+
+sigset_t ending_signals() {
+    sigset_t set;
+    ::sigemptyset(&set);
+    ::sigaddset(&set, SIGTERM);
+    ::sigaddset(&set, SIGINT);
+    return set;
+}
+
+// The signal that ended the wait, 0 after `milliseconds`.
+int wait_for_signal(const sigset_t& set, long milliseconds) {
+    const timespec time{milliseconds / 1000, (milliseconds % 1000) * 1000000};
+    const int signal = ::sigtimedwait(&set, nullptr, &time);
+    return signal > 0 ? signal : 0;
+}
+
+// From here on a second signal ends the process at once. A handler, not the default action: as process 1
+// of a container the default action would be nothing.
+void exit_at_next_signal(const sigset_t& set) {
+    struct sigaction action {};
+    action.sa_handler = [](int) { ::_exit(kWorldFailed); };
+    ::sigaction(SIGTERM, &action, nullptr);
+    ::sigaction(SIGINT, &action, nullptr);
+    ::pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
+int serve(const Config& config, const Engine& engine) {
+    // Blocked before any thread exists, so that no thread but this one is interrupted.
+    const sigset_t signals = ending_signals();
+    ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
+    const Log log(config.log_format);
+    RenderWorker worker([&] { return engine.make_backend({.device = config.device, .shader_dir = {}}); },
+                        config.queue_capacity, log);
+    RenderService service(worker, engine.unsupported, config);
+    HttpServer server(service, config, log);
+    if (const std::string why = server.start(); !why.empty()) {
+        complain(why);
+        return kWorldFailed;
+    }
+    if (!config.port_file.empty()) write_text(config.port_file, std::to_string(server.port()) + "\n");
+    log.info("listening on " + server.url(), {{"version", version()}});
+
+    bool told_ready = false;
+    int signal = 0;
+    while (signal == 0) {
+        signal = wait_for_signal(signals, 100);
+        const RenderWorker::Status status = worker.status();
+        if (status.state == RenderWorker::State::ready && !told_ready) {
+            told_ready = true;
+            log.info("ready", {{"device", status.device.renderer}});
+        }
+        if (status.state == RenderWorker::State::broken) {
+            complain(status.reason);
+            server.stop();
+            return kWorldFailed;
+        }
+        if (signal == 0 && !server.listening()) {
+            complain("the listening socket failed");
+            return kWorldFailed;
+        }
+    }
+    log.info("stopping", {{"signal", std::int64_t(signal)}, {"waiting", std::int64_t(worker.status().waiting)}});
+    exit_at_next_signal(signals);
+    server.stop();
+    log.info("stopped");
+    return kSuccess;
+}
+
+}  // namespace
+
+void add_serve_command(CLI::App& app, CommandContext& context) {
+    CLI::App* command = app.add_subcommand("serve", "Render over HTTP");
+    auto config = std::make_shared<Config>();
+    add_config_options(*command, *config);
+    command->callback([&context, config] {
+        context.run = [&context, config] { return serve(*config, context.engine); };
+    });
+}
+
+}  // namespace penumbra

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Reading the request headers that decide what comes in and what goes out. Plain text functions.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/service/formats.h"
+
+namespace penumbra {
+
+// Accept (RFC 9110, 12.5.1) as wishes; an empty header accepts everything.
+FormatWishes parse_accept(std::string_view accept);
+
+// Why a body with this Content-Type is refused: a sentence; empty when it is JSON in UTF-8.
+std::string refuse_content_type(std::string_view content_type);
+
+// Whether a client's request id may be used as it is: ^[A-Za-z0-9._-]{1,64}$.
+bool is_request_id(std::string_view id);
+std::string new_request_id();
+
+// Why the framing of a body is refused: a sentence; empty when it is sound. What two programs could
+// read differently is refused, so that no request hides in another one's body.
+std::string refuse_framing(const std::vector<std::string>& content_lengths,
+                           const std::vector<std::string>& transfer_encodings);
+
+// A name that is a token of RFC 9110, for Server-Timing: "cascade 3" is "cascade-3".
+std::string timing_name(std::string_view name);
+// "queue;dur=0.12"
+std::string timing_entry(std::string_view name, double ms);
+
+}  // namespace penumbra

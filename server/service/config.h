@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Every setting of the service, its default and the reason for it. Filled in one place:
+// server/cli/config_options.cpp (command line first, then environment, then these).
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace penumbra {
+
+enum class LogFormat { text, json };
+
+struct Config {
+    // Only this machine: a service without authentication is opened to others by a decision.
+    std::string host = "127.0.0.1";
+    int port = 8080;  // 0: the system picks a free one, told in the log and in port_file
+    std::string port_file;
+
+    std::string device = "auto";
+
+    // Renders waiting behind the one that runs. Each waiting one holds a parsed scene (a few MB) and a
+    // client; 16 standard renders of 512 x 512 are some seconds on two cores, which clients sit out.
+    std::size_t queue_capacity = 16;
+    // Threads beyond the ones that wait for renders: they read bodies, encode pictures and answer
+    // health checks while every place of the queue is taken.
+    std::size_t spare_http_threads = 32;
+    // Connections beyond the threads. More are refused at once with 503.
+    std::size_t max_waiting_connections = 256;
+    // Scenes parsed at the same time: parsing takes up to 26 bytes of memory per byte of JSON.
+    std::size_t parse_slots = 4;
+
+    // Room for bitmaps as data URLs; the scene without them is seldom over 1 MiB.
+    std::size_t max_body_bytes = 64u << 20;
+    // The format's own limit (core/scene/limits.h). Operators lower it to bound a render's time.
+    double max_pixels = 8192.0 * 8192.0;
+
+    // Names, cookies of others and tracing headers fit in half of this.
+    std::size_t max_header_bytes = 16u << 10;
+    std::size_t max_header_lines = 100;
+    // From a request's first byte to the last of its body: 64 MiB in 30 s is 18 Mbit/s.
+    int request_timeout_s = 30;
+    // For the whole response: a slow reader must not hold a thread for ever.
+    int response_timeout_s = 60;
+    // Longer than the idle time of common load balancers (60 s), so that they close first.
+    int keep_alive_s = 75;
+
+    LogFormat log_format = LogFormat::text;
+};
+
+}  // namespace penumbra

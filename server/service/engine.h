@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// What the front needs of the renderer, so that all of it is built and tested without a device.
+// server/service/renderer_backend.cpp fills it with the real one; tests fill it with a fake.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/renderer.h"
+
+namespace penumbra {
+
+// Made, used and destroyed on one thread.
+struct RenderBackend {
+    RenderBackend() = default;
+    RenderBackend(const RenderBackend&) = delete;
+    RenderBackend& operator=(const RenderBackend&) = delete;
+    virtual ~RenderBackend() = default;
+
+    virtual RenderResult render(const Scene& scene) = 0;  // throws when the world fails
+    virtual std::string self_test() = 0;                  // empty when right
+    virtual const DeviceInfo& device() const = 0;
+};
+
+using BackendFactory = std::function<std::unique_ptr<RenderBackend>()>;
+
+struct Engine {
+    std::function<std::unique_ptr<RenderBackend>(const RendererOptions&)> make_backend;
+    std::function<Problems(const Scene&)> unsupported;
+    std::function<std::vector<DeviceListing>()> list_devices;
+};
+
+}  // namespace penumbra

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include "server/service/formats.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace penumbra {
+namespace {
+
+constexpr std::array<PictureFormat, 2> kFormats{{
+    {"png", "image/png", ".png"},
+    {"pfm", "image/x-pfm", ".pfm"},
+}};
+
+bool ends_with_ignoring_case(std::string_view text, std::string_view end) {
+    return text.size() >= end.size() &&
+           std::equal(end.rbegin(), end.rend(), text.rbegin(), [](char a, char b) {
+               return std::tolower(static_cast<unsigned char>(a)) ==
+                      std::tolower(static_cast<unsigned char>(b));
+           });
+}
+
+}  // namespace
+
+std::span<const PictureFormat> picture_formats() { return kFormats; }
+
+const PictureFormat* find_format(std::string_view name) {
+    for (const PictureFormat& format : kFormats) {
+        if (format.name == name) return &format;
+    }
+    return nullptr;
+}
+
+const PictureFormat* find_format_of_file(std::string_view path) {
+    for (const PictureFormat& format : kFormats) {
+        if (ends_with_ignoring_case(path, format.extension)) return &format;
+    }
+    return nullptr;
+}
+
+std::string format_names() {
+    std::string names;
+    for (const PictureFormat& format : kFormats) {
+        if (!names.empty()) names += ", ";
+        names += format.name;
+    }
+    return names;
+}
+
+bool FormatWishes::nothing_fits() const {
+    return any_q <= 0 &&
+           std::none_of(wishes.begin(), wishes.end(), [](const Wish& wish) { return wish.q > 0; });
+}
+
+std::string FormatWishes::choose(const std::string& scene_format) const {
+    // A format that the list does not know stays the scene's choice as far as "*/*" reaches; that it
+    // cannot be written is then told as a problem of the scene.
+    std::string best = scene_format;
+    double best_q = any_q;
+    for (const Wish& wish : wishes) {
+        if (wish.format == scene_format) best_q = wish.q;
+    }
+    for (const Wish& wish : wishes) {
+        if (wish.q > best_q) {
+            best = wish.format;
+            best_q = wish.q;
+        }
+    }
+    return best;
+}
+
+FormatWishes any_format() {
+    FormatWishes wishes;
+    for (const PictureFormat& format : kFormats) {
+        wishes.wishes.push_back({std::string(format.name), 1});
+    }
+    return wishes;
+}
+
+FormatWishes only_format(std::string_view name) {
+    FormatWishes wishes;
+    wishes.wishes.push_back({std::string(name), 1});
+    wishes.any_q = 0;
+    return wishes;
+}
+
+Bytes encode_picture(const RenderResult& result) {
+    if (const Image8* pixels = std::get_if<Image8>(&result.picture)) return encode_png(*pixels);
+    return encode_pfm(std::get<ImageF>(result.picture));
+}
+
+}  // namespace penumbra

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// One thread that owns the one backend (a GL context belongs to a thread), behind one bounded queue.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "server/service/engine.h"
+#include "server/service/log.h"
+
+namespace penumbra {
+
+struct RenderOutcome {
+    std::optional<RenderResult> result;
+    std::string error;   // for the log, never for a client; empty with a result
+    bool not_ready = false;  // it was not tried: there is no renderer that works
+    double wait_ms = 0;      // in the queue
+};
+
+class RenderWorker {
+public:
+    enum class State {
+        starting,  // making the context and testing it
+        ready,
+        failing,   // the self test gave a wrong picture
+        broken,    // there is no backend: it could not be made
+    };
+    struct Status {
+        State state = State::starting;
+        std::string reason;  // a sentence unless ready
+        DeviceInfo device;   // empty while there is none
+        std::size_t waiting = 0;
+        std::size_t capacity = 0;
+        std::uint64_t rendered = 0;
+        double render_ms = 0;  // moving average, 0 before the first render
+    };
+    enum class Refusal { queue_full, not_ready };
+
+    RenderWorker(BackendFactory factory, std::size_t queue_capacity, const Log& log);
+    // Finishes what is queued.
+    ~RenderWorker();
+    RenderWorker(const RenderWorker&) = delete;
+    RenderWorker& operator=(const RenderWorker&) = delete;
+
+    struct Ticket {
+        std::optional<Refusal> refusal;
+        std::future<RenderOutcome> outcome;  // valid exactly without a refusal
+    };
+    // Never waits. The scene has passed validation.
+    Ticket submit(std::shared_ptr<const Scene> scene);
+
+    // Whether submit() would refuse now: asked before the work of parsing a scene.
+    std::optional<Refusal> refusal() const;
+
+    Status status() const;
+
+    // How long until what waits now is rendered, by the measured rate; at least 1.
+    int retry_after_s() const;
+
+    // Waits until the state is not `starting`.
+    State wait_until_started() const;
+
+private:
+    struct Job {
+        std::shared_ptr<const Scene> scene;
+        std::promise<RenderOutcome> promise;
+        std::chrono::steady_clock::time_point since;
+    };
+
+    void run(const BackendFactory& factory);
+    bool make_backend(const BackendFactory& factory);  // false: there is none
+    void test_backend();
+    RenderOutcome render(const Scene& scene, const BackendFactory& factory);
+    void recover(const BackendFactory& factory);
+    void set_state(State state, std::string reason);
+    std::optional<Refusal> refusal_locked() const;
+
+    const Log& log_;
+    const std::size_t capacity_;
+
+    mutable std::mutex mutex_;
+    mutable std::condition_variable changed_;
+    std::deque<Job> queue_;
+    bool stopping_ = false;
+    Status status_;
+
+    std::unique_ptr<RenderBackend> backend_;  // touched by the thread alone
+    std::thread thread_;                      // last: it uses all above
+};
+
+}  // namespace penumbra

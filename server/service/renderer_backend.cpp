@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// The one file of the front that needs the renderer's library.
+#include "server/service/renderer_backend.h"
+
+namespace penumbra {
+namespace {
+
+class RendererBackend final : public RenderBackend {
+public:
+    explicit RendererBackend(const RendererOptions& options) : renderer_(options) {}
+
+    RenderResult render(const Scene& scene) override { return renderer_.render(scene); }
+    std::string self_test() override { return renderer_.self_test(); }
+    const DeviceInfo& device() const override { return renderer_.device(); }
+
+private:
+    Renderer renderer_;
+};
+
+}  // namespace
+
+Engine real_engine() {
+    Engine engine;
+    engine.make_backend = [](const RendererOptions& options) -> std::unique_ptr<RenderBackend> {
+        return std::make_unique<RendererBackend>(options);
+    };
+    engine.unsupported = [](const Scene& scene) { return unsupported(scene); };
+    engine.list_devices = [] { return Renderer::list_devices(); };
+    return engine;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// The real program with the real renderer, from end to end.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <httplib.h>
+#include <nlohmann/json.hpp>
+
+#include "core/image/codec.h"
+#include "process.h"
+
+namespace penumbra::test {
+namespace {
+
+const std::string kScene = R"({"version": 1, "canvas": {"width": 70, "height": 50}, "sky": {"radiance": 0.02},
+  "shapes": [{"type": "circle", "center": [30, 25], "radius": 6, "emission": [4, 3, 2]},
+             {"type": "rect", "center": [50, 25], "size": [4, 20], "albedo": 0.5}]})";
+
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+// A cold compile of the shaders for each process is what a fresh machine does; here once is enough.
+TEST(Real, CommandLineAndServiceGiveTheSameBytes) {
+    const TemporaryFolder folder;
+    Running program(PENUMBRA_PROGRAM, {"serve", "--port", "0", "--port-file", folder.path("port")});
+    const int port = wait_for_port(folder.path("port"));
+    ASSERT_GT(port, 0) << program.err();
+    httplib::Client client("127.0.0.1", port);
+    client.set_read_timeout(60);
+
+    for (const auto& [format, type] : {std::pair{"png", "image/png"}, std::pair{"pfm", "image/x-pfm"}}) {
+        const auto served = client.Post("/v1/render", {{"Accept", type}}, kScene, "application/json");
+        ASSERT_TRUE(served) << program.err();
+        ASSERT_EQ(served->status, 200) << served->body;
+        EXPECT_NE(served->get_header_value("Server-Timing").find("cascade"), std::string::npos);
+        const Finished rendered = run_program(PENUMBRA_PROGRAM, {"render", "-", "-o", "-", "--format", format}, kScene);
+        ASSERT_EQ(rendered.exit_code, 0) << rendered.err;
+        EXPECT_EQ(rendered.err, "");
+        EXPECT_TRUE(rendered.out == served->body) << format;
+        if (std::string(format) == "png") {
+            const auto picture = decode_png(bytes_of(served->body));
+            ASSERT_TRUE(std::holds_alternative<Texels>(picture));
+            EXPECT_EQ(std::get<Texels>(picture).width, 70);
+            EXPECT_EQ(std::get<Texels>(picture).height, 50);
+        } else {
+            EXPECT_TRUE(std::holds_alternative<ImageF>(decode_pfm(bytes_of(served->body))));
+        }
+    }
+    const auto ready = client.Get("/readyz");
+    ASSERT_TRUE(ready);
+    EXPECT_EQ(ready->status, 200) << ready->body << program.err();
+    const auto info = client.Get("/v1/info");
+    ASSERT_TRUE(info);
+    EXPECT_FALSE(nlohmann::json::parse(info->body)["device"]["renderer"].get<std::string>().empty());
+    const auto lights = client.Post("/v1/render", R"({"version": 1, "canvas": {"width": 4, "height": 4},
+      "render": {"bounces": 3}})", "application/json");
+    ASSERT_TRUE(lights);
+    EXPECT_TRUE(lights->status == 200 || lights->status == 422) << lights->body;
+
+    program.signal(SIGTERM);
+    EXPECT_EQ(program.wait(), 0) << program.err();
+}
+
+TEST(Real, InfoAndStatsAreJson) {
+    const Finished info = run_program(PENUMBRA_PROGRAM, {"info", "--json"});
+    ASSERT_EQ(info.exit_code, 0) << info.err;
+    EXPECT_GE(nlohmann::json::parse(info.out)["devices"].size(), 1u);
+    const TemporaryFolder folder;
+    const Finished render = run_program(
+        PENUMBRA_PROGRAM, {"render", "-", "-o", folder.path("out.png"), "--stats", "-", "--device", "cpu"}, kScene);
+    ASSERT_EQ(render.exit_code, 0) << render.err;
+    EXPECT_GE(nlohmann::json::parse(render.out)["passes"].size(), 3u);
+}
+
+}  // namespace
+}  // namespace penumbra::test
