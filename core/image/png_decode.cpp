@@ -2,7 +2,9 @@
 #include <spng.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/image/codec.h"
@@ -11,8 +13,8 @@ namespace penumbra {
 
 namespace {
 
-constexpr std::size_t kChunkCacheBytes = 1u << 20;  // texts and profiles, which we never read
-constexpr double kMostInflation = 1032;             // deflate cannot do better
+constexpr std::size_t kChunkBytes = 1u << 20;  // for texts and profiles, which we never read
+constexpr double kMostInflation = 1032;        // deflate cannot do better
 constexpr double kSlackBytes = 1024;
 
 struct ContextDeleter {
@@ -36,26 +38,56 @@ double bits_per_pixel(const spng_ihdr& header) {
     }
 }
 
-std::string size_text(const spng_ihdr& header) {
-    return std::to_string(header.width) + " x " + std::to_string(header.height);
+std::string size_text(double width, double height) {
+    return std::to_string((long long)width) + " x " + std::to_string((long long)height);
+}
+
+std::uint32_t read_u32(std::span<const std::uint8_t> bytes, std::size_t at) {
+    return std::uint32_t(bytes[at]) << 24 | std::uint32_t(bytes[at + 1]) << 16 |
+           std::uint32_t(bytes[at + 2]) << 8 | bytes[at + 3];
+}
+
+// The limits, against the size that the file's head tells: before libspng sees it, whose own limits
+// would say neither what was found nor what is allowed. What is no PNG passes; libspng says why.
+std::optional<DecodeError> over_limits(std::span<const std::uint8_t> bytes,
+                                       const DecodeLimits& limits) {
+    constexpr std::array<std::uint8_t, 16> kHead{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n',
+                                                 0,    0,   0,   13,  'I',  'H',  'D',  'R'};
+    if (bytes.size() < kHead.size() + 8 || !std::equal(kHead.begin(), kHead.end(), bytes.begin())) {
+        return std::nullopt;
+    }
+    const double width = read_u32(bytes, 16);
+    const double height = read_u32(bytes, 20);
+    const std::string found = "is " + size_text(width, height) + " pixels; at most ";
+    if (std::max(width, height) > limits.max_side_px) {
+        return DecodeError{found + std::to_string(limits.max_side_px) + " on a side are allowed",
+                           true};
+    }
+    if (width * height > limits.max_pixels) {
+        return DecodeError{
+            found + std::to_string((long long)limits.max_pixels) + " in all are allowed", true};
+    }
+    return std::nullopt;
 }
 
 }  // namespace
 
 std::variant<Texels, DecodeError> decode_png(std::span<const std::uint8_t> bytes,
                                              const DecodeLimits& limits) {
+    if (auto error = over_limits(bytes, limits)) {
+        return *error;
+    }
     const std::unique_ptr<spng_ctx, ContextDeleter> context(spng_ctx_new(0));
     if (!context) {
         return DecodeError{"cannot be decoded: out of memory"};
     }
-    // No chunk is longer than the file, so that a lying length costs nothing. The size limits here
-    // are those of the PNG format: ours are checked below, to say what was found and what is
-    // allowed.
-    constexpr std::uint32_t kFormatSide = 0x7fffffff;
-    int code = spng_set_image_limits(context.get(), kFormatSide, kFormatSide);
+    // No chunk is longer than the file, so that a lying length costs nothing; texts and profiles
+    // may inflate to a little more.
+    const auto side = std::uint32_t(std::max(limits.max_side_px, 1));
+    const std::size_t most_chunk = std::max(bytes.size(), kChunkBytes);
+    int code = spng_set_image_limits(context.get(), side, side);
     if (code == 0) {
-        code = spng_set_chunk_limits(context.get(), bytes.size(),
-                                     std::min(bytes.size(), kChunkCacheBytes));
+        code = spng_set_chunk_limits(context.get(), most_chunk, most_chunk);
     }
     if (code == 0) {
         code = spng_set_png_buffer(context.get(), bytes.data(), bytes.size());
@@ -68,22 +100,11 @@ std::variant<Texels, DecodeError> decode_png(std::span<const std::uint8_t> bytes
         return failed(code);
     }
     const double pixels = double(header.width) * double(header.height);
-    const auto side = std::uint32_t(std::max(limits.max_side_px, 0));
-    if (header.width > side || header.height > side) {
-        return DecodeError{"is " + size_text(header) + " pixels; at most " + std::to_string(side) +
-                               " on a side are allowed",
-                           true};
-    }
-    if (pixels > limits.max_pixels) {
-        return DecodeError{"is " + size_text(header) + " pixels; at most " +
-                               std::to_string((long long)limits.max_pixels) + " in all are allowed",
-                           true};
-    }
     // A header that promises more than the file can hold is refused before memory is taken for it.
     if (pixels * bits_per_pixel(header) / 8 > kMostInflation * double(bytes.size()) + kSlackBytes) {
-        return DecodeError{"cannot be decoded as PNG: the header promises " + size_text(header) +
-                           " pixels, more than " + std::to_string(bytes.size()) +
-                           " bytes can hold"};
+        return DecodeError{"cannot be decoded as PNG: the header promises " +
+                           size_text(header.width, header.height) + " pixels, more than " +
+                           std::to_string(bytes.size()) + " bytes can hold"};
     }
 
     Texels texels;

@@ -17,6 +17,9 @@ constexpr int kCompressionLevel = 1;     // the higher levels cost more time tha
 constexpr std::uint8_t kFilterSub = 1;   // each byte less the same channel of the pixel to its left
 constexpr std::uint8_t kPerceptual = 0;  // the sRGB chunk's rendering intent
 
+constexpr std::array<std::uint8_t, 8> kSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+constexpr std::size_t kMostHeadBytes = 128;  // of what comes before the pixels
+
 struct CompressorDeleter {
     void operator()(libdeflate_compressor* compressor) const {
         libdeflate_free_compressor(compressor);
@@ -81,22 +84,24 @@ Bytes encode_png(const Image8& image) {
     assert(image.data.size() ==
            std::size_t(image.width) * std::size_t(image.height) * std::size_t(image.channels));
 
-    Bytes file{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    const Bytes filtered = filter_rows(image);
+    Bytes file;
+    file.reserve(kMostHeadBytes);
+    file.assign(kSignature.begin(), kSignature.end());
 
     const std::size_t header = begin_chunk(file, "IHDR");
-    std::array<std::uint8_t, 13> ihdr{};
-    put_u32(ihdr.data(), std::uint32_t(image.width));
-    put_u32(ihdr.data() + 4, std::uint32_t(image.height));
+    file.resize(file.size() + 13);  // compression, filter method and interlace are 0
+    std::uint8_t* const ihdr = file.data() + file.size() - 13;
+    put_u32(ihdr, std::uint32_t(image.width));
+    put_u32(ihdr + 4, std::uint32_t(image.height));
     ihdr[8] = 8;
     ihdr[9] = colour_type(image.channels);
-    file.insert(file.end(), ihdr.begin(), ihdr.end());
     finish_chunk(file, header);
 
     const std::size_t srgb = begin_chunk(file, "sRGB");
     file.push_back(kPerceptual);
     finish_chunk(file, srgb);
 
-    const Bytes filtered = filter_rows(image);
     const std::unique_ptr<libdeflate_compressor, CompressorDeleter> compressor(
         libdeflate_alloc_compressor(kCompressionLevel));
     if (!compressor) {

@@ -178,7 +178,7 @@ void validate_word(RangeChecks& checks, const Path& where, std::string_view word
                    std::span<const std::string_view> words) {
     if (!known) {
         checks.add(where, "unknown_value",
-                   "must be " + join_words(words) + ", is " + quoted(word) +
+                   "must be " + join_words(words) + ", is " + in_quotes(word) +
                        did_you_mean(nearest_word(word, words)));
     }
 }

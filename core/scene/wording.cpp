@@ -58,7 +58,7 @@ std::string number_text(double value) {
     return std::string(buffer.data(), end.ptr);
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     std::size_t end = std::min(text.size(), kLongestQuote);
     const bool cut = end < text.size();
     // Do not cut inside a UTF-8 sequence.
@@ -118,7 +118,7 @@ std::string_view nearest_word(std::string_view word, std::span<const std::string
 }
 
 std::string did_you_mean(std::string_view suggestion) {
-    return suggestion.empty() ? std::string() : " (did you mean " + quoted(suggestion) + "?)";
+    return suggestion.empty() ? std::string() : " (did you mean " + in_quotes(suggestion) + "?)";
 }
 
 }  // namespace penumbra

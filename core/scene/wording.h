@@ -12,7 +12,7 @@ namespace penumbra {
 std::string number_text(double value);
 
 // In double quotes; long texts are cut, bytes that a terminal could not show are escaped.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 // "a, b or c"
 std::string join_words(std::span<const std::string_view> words);

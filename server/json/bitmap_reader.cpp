@@ -26,8 +26,8 @@ std::shared_ptr<const Texels> BitmapReader::read(const Path& where, NodeId id) {
     }
     if (!url->starts_with(kPrefix)) {
         reader_.report(where, id, "bad_image", [&] {
-            return "must be a PNG in a data URL that starts with " + quoted(kPrefix) +
-                   " (files and addresses are never opened), is " + quoted(*url);
+            return "must be a PNG in a data URL that starts with " + in_quotes(kPrefix) +
+                   " (files and addresses are never opened), is " + in_quotes(*url);
         });
         return nullptr;
     }

@@ -48,7 +48,7 @@ Colour ValueReader::hex_colour(const Path& where, NodeId id) {
     }
     if (!good) {
         report(where, id, "bad_colour",
-               [&] { return "must be \"#\" and six hexadecimal digits, is " + quoted(text); });
+               [&] { return "must be \"#\" and six hexadecimal digits, is " + in_quotes(text); });
         return Colour(kUnread);
     }
     return {srgb_to_linear(bytes[0]), srgb_to_linear(bytes[1]), srgb_to_linear(bytes[2])};

@@ -49,12 +49,12 @@ public:
                     next = tree_.child(at, index);
                 }
                 if (next == kNoNode) {
-                    return "has no place " + quoted(token) + ": the list holds " +
+                    return "has no place " + in_quotes(token) + ": the list holds " +
                            std::to_string(tree_[at].child_count) + " (\"-\" appends)";
                 }
             } else {
                 return "goes on inside " + std::string(kind_name(tree_[at].kind)) + " at " +
-                       quoted(token);
+                       in_quotes(token);
             }
             if (last) {
                 replace(next, value);
@@ -125,10 +125,11 @@ void apply_overrides(JsonTree& tree, const std::vector<Override>& overrides,
     for (const Override& override : overrides) {
         std::string error = Application(tree, override, limits).run();
         if (!error.empty()) {
-            problems.add({{override.pointer, "bad_override",
-                           "the override of " + quoted(override.pointer) + " " + std::move(error)},
-                          kNotInText,
-                          {}});
+            problems.add(
+                {{override.pointer, "bad_override",
+                  "the override of " + in_quotes(override.pointer) + " " + std::move(error)},
+                 kNotInText,
+                 {}});
         }
     }
 }

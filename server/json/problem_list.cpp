@@ -11,8 +11,8 @@ namespace {
 
 template <class Visit>
 bool any_pointer_above(std::string pointer, Visit visit) {
-    while (!pointer.empty()) {
-        pointer.resize(pointer.rfind('/'));
+    for (std::size_t end = pointer.rfind('/'); end != pointer.npos; end = pointer.rfind('/')) {
+        pointer.resize(end);
         if (visit(pointer)) {
             return true;
         }

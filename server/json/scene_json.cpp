@@ -20,7 +20,7 @@ namespace {
 void add_duplicates(const JsonTree& tree, ProblemList& problems) {
     for (const DuplicateKey& duplicate : tree.duplicates) {
         problems.add({{duplicate.pointer, "duplicate_key",
-                       "the key " + quoted(duplicate.key) + " is given twice: keep one"},
+                       "the key " + in_quotes(duplicate.key) + " is given twice: keep one"},
                       duplicate.offset,
                       {}});
     }

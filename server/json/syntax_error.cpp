@@ -115,38 +115,7 @@ std::string_view word_at(std::string_view text, std::size_t at) {
 }
 
 bool is_json_number(std::string_view word) {
-    std::size_t at = 0;
-    const auto digits = [&] {
-        const std::size_t start = at;
-        while (at < word.size() && is_digit(word[at])) {
-            ++at;
-        }
-        return at - start;
-    };
-    if (at < word.size() && word[at] == '-') {
-        ++at;
-    }
-    const std::size_t first = at;
-    const std::size_t whole = digits();
-    if (whole == 0 || (whole > 1 && word[first] == '0')) {
-        return false;
-    }
-    if (at < word.size() && word[at] == '.') {
-        ++at;
-        if (digits() == 0) {
-            return false;
-        }
-    }
-    if (at < word.size() && (word[at] == 'e' || word[at] == 'E')) {
-        ++at;
-        if (at < word.size() && (word[at] == '+' || word[at] == '-')) {
-            ++at;
-        }
-        if (digits() == 0) {
-            return false;
-        }
-    }
-    return at == word.size();
+    return !word.empty() && number_end(word, 0) == word.size();
 }
 
 std::string lowered(std::string_view word) {
@@ -159,13 +128,13 @@ std::string lowered(std::string_view word) {
 std::string what_stands_at(std::string_view text, std::size_t at) {
     const std::string_view word = word_at(text, at);
     if (!word.empty()) {
-        return quoted(word);
+        return in_quotes(word);
     }
     if (text[at] == '"') {
         return "a string";
     }
     const std::size_t length = utf8_length(text, at);
-    return length == 0 ? "a byte that is not UTF-8" : quoted(text.substr(at, length));
+    return length == 0 ? "a byte that is not UTF-8" : in_quotes(text.substr(at, length));
 }
 
 std::string expected_after(After after) {
@@ -194,25 +163,63 @@ SyntaxError value_error(std::string_view text, std::size_t at, std::string expec
     const std::string small = lowered(word);
     if (small == "nan" || small == "inf" || small == "infinity" || small == "-inf" ||
         small == "-infinity" || small == "-nan") {
-        return {at, quoted(word) + " is not JSON: numbers must be finite"};
+        return {at, in_quotes(word) + " is not JSON: numbers must be finite"};
     }
     if (small == "true" || small == "false" || small == "null") {
-        return {at, quoted(word) + " must be written in small letters: " + small};
+        return {at, in_quotes(word) + " must be written in small letters: " + small};
     }
     if (is_json_number(word)) {
-        return {at, "the number " + quoted(word) + " is too large to be represented"};
+        return {at, "the number " + in_quotes(word) + " is too large to be represented"};
     }
     if (!word.empty() &&
         (is_digit(word[0]) || word[0] == '-' || word[0] == '+' || word[0] == '.')) {
-        return {at, quoted(word) + " is not a number as JSON writes them"};
+        return {at, in_quotes(word) + " is not a number as JSON writes them"};
     }
     if (!word.empty()) {
-        return {at, quoted(word) + " is not JSON: texts stand in double quotes"};
+        return {at, in_quotes(word) + " is not JSON: texts stand in double quotes"};
     }
     return {at, what_stands_at(text, at) + " is not expected here: " + expected};
 }
 
 }  // namespace
+
+std::size_t number_end(std::string_view text, std::size_t at) {
+    const std::size_t none = at;
+    const auto next_is = [&](char c) { return at < text.size() && text[at] == c; };
+    const auto skip_digits = [&] {
+        const std::size_t start = at;
+        while (at < text.size() && is_digit(text[at])) {
+            ++at;
+        }
+        return at > start;
+    };
+    if (next_is('-')) {
+        ++at;
+    }
+    if (next_is('0')) {
+        ++at;  // nothing else of the whole part may follow
+    } else if (!skip_digits()) {
+        return none;
+    }
+    std::size_t end = at;
+    if (next_is('.')) {
+        ++at;
+        if (!skip_digits()) {
+            return end;
+        }
+        end = at;
+    }
+    if (next_is('e') || next_is('E')) {
+        ++at;
+        if (next_is('+') || next_is('-')) {
+            ++at;
+        }
+        if (skip_digits()) {
+            end = at;
+        }
+    }
+    return end;
+}
 
 std::size_t skip_space(std::string_view text, std::size_t at) {
     while (at < text.size() &&

@@ -29,6 +29,9 @@ struct SyntaxError {
 
 SyntaxError describe_syntax_error(std::string_view text, std::size_t good_until, After after);
 
+// The end of the longest JSON number that starts at `at`; `at` itself when there is none.
+std::size_t number_end(std::string_view text, std::size_t at);
+
 // The first byte at or after `at` that is not JSON's white space.
 std::size_t skip_space(std::string_view text, std::size_t at);
 

@@ -160,8 +160,7 @@ private:
             return false;
         }
         node->number = value;
-        const std::size_t end = text_.find_first_not_of("+-.0123456789eE", cursor_);
-        cursor_ = std::min(end, text_.size());
+        cursor_ = number_end(text_, cursor_);
         return true;
     }
 

@@ -145,7 +145,7 @@ std::optional<std::size_t> ValueReader::choice(const Path& where, NodeId id,
     report_at(
         where, node(id).offset, "unknown_value",
         [&] {
-            return "must be " + join_words(words) + ", is " + quoted(*word) + did_you_mean(near);
+            return "must be " + join_words(words) + ", is " + in_quotes(*word) + did_you_mean(near);
         },
         near);
     return std::nullopt;
@@ -221,9 +221,9 @@ Members::Members(ValueReader& reader, const Path& where, NodeId object,
         reader.report_at(
             where.key(key), reader.node(id).key_offset, "unknown_key",
             [&] {
-                return quoted(key) + " is not a key of " + std::string(of_what) +
+                return in_quotes(key) + " is not a key of " + std::string(of_what) +
                        did_you_mean(meant) +
-                       (home.empty() ? std::string() : " (it belongs in " + quoted(home) + ")");
+                       (home.empty() ? std::string() : " (it belongs in " + in_quotes(home) + ")");
             },
             meant);
     }
@@ -233,7 +233,7 @@ NodeId Members::require(std::string_view key) const {
     const NodeId id = find(key);
     if (id == kNoNode) {
         reader_.report_at(where_.key(key), reader_.node(object_).offset, "missing_key", [&] {
-            return "is missing: " + std::string(of_what_) + " needs " + quoted(key);
+            return "is missing: " + std::string(of_what_) + " needs " + in_quotes(key);
         });
     }
     return id;
