@@ -9,11 +9,13 @@
 #include <thread>
 
 #include "core/gl/context.h"
+#include "core/gl/loop_limit.h"
 #include "core/gl/timer.h"
 #include "core/passes/cascade_pass.h"
 #include "core/passes/compose_pass.h"
 #include "core/passes/distance_pass.h"
 #include "core/passes/jump_flood_pass.h"
+#include "core/passes/reference_pass.h"
 #include "core/passes/resolve_pass.h"
 #include "core/passes/scene_buffers.h"
 #include "core/plan/plan.h"
@@ -69,6 +71,7 @@ struct Renderer::Impl {
           jump_flood(options.shader_dir),
           cascade(options.shader_dir),
           resolve(options.shader_dir),
+          reference(options.shader_dir),
           compose(options.shader_dir) {
         const gl::ContextInfo& gl_info = context.info();
         info.kind = gl_info.software ? "cpu" : "gpu";
@@ -82,6 +85,8 @@ struct Renderer::Impl {
         info.max_group_invocations = gl_info.max_group_invocations;
         limits.max_texture_side = gl_info.max_texture_side;
         limits.max_buffer_texels = static_cast<std::size_t>(gl_info.max_texture_buffer_texels);
+        info.max_loop_iterations = gl::measure_loop_limit(options.shader_dir);
+        limits.max_loop_iterations = info.max_loop_iterations;
         limits.software = gl_info.software;
         if (!gl_info.software) limits.max_texture_bytes = std::size_t(8) << 30;
         // About 10 ms a dispatch on two cores of llvmpipe; a GPU takes a hundred times that.
@@ -103,6 +108,7 @@ struct Renderer::Impl {
     JumpFloodPass jump_flood;
     CascadePass cascade;
     ResolvePass resolve;
+    ReferencePass reference;
     ComposePass compose;
     DeviceInfo info;
     DeviceLimits limits;
@@ -134,6 +140,9 @@ RenderResult Renderer::Impl::render(const Scene& scene) {
         });
         radiance = std::move(merged);
     }
+    if (plan.reference.rays > 0)
+        record.pass("reference", plan.canvas,
+                    [&] { return reference.run(plan, scene.sky, buffers, field, slicing, radiance); });
     if (plan.resolve)
         record.pass("resolve", plan.canvas, [&] {
             gl::Texture2D resolved;

@@ -1,5 +1,6 @@
 // Reads distance, material and the cascade above; writes, per probe and direction group, the mean of four
-// merged intervals: radiance, and the share that is still open. One thread is one probe and direction group.
+// merged intervals: radiance, and 1; or 0 and 0 for a probe inside a shape, which sees nothing that its neighbours
+// should. One thread is one probe and direction group.
 // The layout is direction first: one tile of probes per group, so that the merge between the four nearest
 // probes of the cascade above is one filtered fetch (docs/methods/rc.md).
 #version 430 core
@@ -24,27 +25,34 @@ void main() {
     int group = tile.y * params.tiles.x + tile.x;
     vec2 p = params.first_probe + vec2(probe) * params.spacing;
 
+    if (interpolated_distance(p, params.border, textureSize(distance_texture, 0) - 1) <= 0.0) {
+        imageStore(cascade_image, texel, vec4(0.0));
+        return;
+    }
+
     float angle = (float(group) + 0.5) * params.group_angle;
     vec2 centre = vec2(cos(angle), sin(angle));
     vec2 upper_probe = (p - params.upper_first) / params.upper_spacing + 0.5;
     upper_probe = clamp(upper_probe, vec2(0.5), vec2(params.upper_probes) - 0.5);
 
-    vec4 sum = vec4(0.0);
+    vec3 sum = vec3(0.0);
+    int budget = kMarchBudget;
     for (int m = 0; m < 4; ++m) {
         float c = params.offset_cos[m];
         float s = params.offset_sin[m];
         vec2 d = vec2(centre.x * c - centre.y * s, centre.y * c + centre.x * s);
         int direction = 4 * group + m;
         vec3 radiance;
-        int fate = march(p, d, params.start, params.end, params.domain, params.border, radiance);
-        vec4 merged = vec4(radiance, 0.0);
+        int fate = march(p, d, params.start, params.end, params.domain, params.border, budget, radiance);
         if (fate == kRayLeft || (fate == kRayPassed && params.is_last != 0)) {
-            merged.rgb = sky_radiance(direction);
+            radiance = sky_radiance(direction);
         } else if (fate == kRayPassed) {
             ivec2 upper_tile = ivec2(direction % params.upper_tiles.x, direction / params.upper_tiles.x);
-            merged = textureLod(upper_texture, (vec2(upper_tile * params.upper_probes) + upper_probe) * params.upper_texel, 0.0);
+            // The mean over those of the four probes that are in free space.
+            vec4 above = textureLod(upper_texture, (vec2(upper_tile * params.upper_probes) + upper_probe) * params.upper_texel, 0.0);
+            radiance = above.a > 0.0 ? above.rgb / above.a : vec3(0.0);
         }
-        sum += merged;
+        sum += radiance;
     }
-    imageStore(cascade_image, texel, 0.25 * sum);
+    imageStore(cascade_image, texel, vec4(0.25 * sum, 1.0));
 }

@@ -13,10 +13,11 @@ const int kCascadeDistanceUnit = 4;  // r32f
 const int kCascadeMaterialUnit = 5;  // r32i
 const int kCascadeUpperUnit = 6;     // rgba, linear filter, the cascade above
 
-// Steps of one interval. Each step is at least a pixel, so only a ray that grazes a surface for longer
-// than this runs out, and is then blocked (errata E-5). Four rays stay under the 65535 iterations after
-// which Mesa 22 ends every loop.
-const int kMaxMarchSteps = 16000;
+// Loop iterations of one invocation, its four rays and all inner loops together: under the 65535 after which
+// Mesa 22 ends every loop. A ray that finds them spent is blocked, never free (errata E-5).
+const int kMarchBudget = 60000;
+// Outlines of more edges than this are not asked during a march; the distance is interpolated instead.
+const int kMostMarchedEdges = 24;
 
 struct CascadeParams {
     ivec2 origin;       // first texel of this slice

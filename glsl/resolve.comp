@@ -1,5 +1,5 @@
 // Reads cascade 0; writes the mean radiance of every pixel: the mean over direction groups, interpolated
-// between probes. One thread is one pixel. Not run when cascade 0 already is that.
+// between probes in free space. One thread is one pixel. Not run when cascade 0 already is that.
 #version 430 core
 #include "resolve.h"
 
@@ -17,5 +17,5 @@ void main() {
     for (int y = 0; y < params.tiles.y; ++y)
         for (int x = 0; x < params.tiles.x; ++x)
             sum += textureLod(cascade_texture, (vec2(ivec2(x, y) * params.probes) + probe) * params.texel, 0.0);
-    imageStore(radiance_image, pixel, sum / float(params.tiles.x * params.tiles.y));
+    imageStore(radiance_image, pixel, sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : vec4(0.0));
 }

@@ -27,6 +27,9 @@ const int kShapeBitmap = 6;
 //      bitmap: first texel, texels across, texels down, alpha threshold
 const int kShapeTexels = 4;
 
+// Newton steps of the distance to an ellipse; the plan counts them where loops are bounded.
+const int kEllipseIterations = 12;
+
 // Texture units of the scene's buffer textures, the same in every pass.
 const int kShapeRecordsUnit = 0;
 const int kEdgesUnit = 1;         // RGBA32F: x0 y0 x1 y1 of an edge

@@ -11,7 +11,7 @@
 namespace penumbra {
 
 // Reads distance, material and the cascade above (none for the last), with the scene buffers bound.
-// Writes one cascade: radiance rgb and open share a. One invocation per probe and direction group.
+// Writes one cascade: radiance rgb, and in a whether the probe is in free space. One invocation per probe and direction group.
 class CascadePass {
 public:
     explicit CascadePass(const std::string& shader_dir);

@@ -9,7 +9,14 @@ namespace {
 
 // The farthest cascade's sectors from the exact integral; each nearer cascade averages four of the next.
 std::vector<glm::vec4> sky_table(const Sky& sky, const Plan& plan) {
-    if (sky.gradient.empty() || plan.cascades.empty()) return {};
+    if (sky.gradient.empty()) return {};
+    if (plan.reference.rays > 0) {
+        std::vector<glm::vec4> table;
+        for (const Colour& mean : sky_sectors(sky, plan.reference.rays))
+            table.push_back(glm::vec4(glm::vec3(mean / plan.radiance_scale), 0.0f));
+        return table;
+    }
+    if (plan.cascades.empty()) return {};
     const CascadePlan& last = plan.cascades.back();
     std::vector<glm::vec4> table(static_cast<std::size_t>(last.sky_first + last.directions()));
     const std::vector<Colour> sectors = sky_sectors(sky, last.directions());

@@ -7,16 +7,50 @@
 #include "core/device_error.h"
 #include "core/plan/pack.h"
 #include "core/plan/sky.h"
+#include "glsl/scene_records.h"
 
 namespace penumbra {
 namespace {
 
-// Iterations that one dispatch of the distance pass may spend on shapes and edges: half of what Mesa 22
-// allows an invocation, since the loop over shapes contains the loop over edges.
+// Iterations that one dispatch of the distance pass may spend: half of what Mesa 22 allows an invocation, since a
+// loop's last test may count as well.
 constexpr std::size_t kIterationsPerSlice = 30000;
+
+// Loop iterations of the distance to a shape.
+std::size_t distance_iterations(const Shape& shape) {
+    const bool ellipse = std::holds_alternative<Ellipse>(shape.geometry);
+    return 1 + edge_count(shape) + (ellipse ? static_cast<std::size_t>(glsl::kEllipseIterations) : 0);
+}
 
 // Above this, cascades are kept in half floats: two 4096 x 4096 textures in full floats are 512 MiB.
 constexpr std::size_t kFullFloatBytes = std::size_t(320) << 20;
+
+// How many shapes, edges and texels a ray is tested against at most.
+std::size_t tests_per_ray(const std::vector<Shape>& shapes) {
+    std::size_t tests = 0;
+    for (const Shape& shape : shapes) {
+        tests += 1 + edge_count(shape);
+        if (const auto* bitmap = std::get_if<Bitmap>(&shape.geometry))
+            tests += static_cast<std::size_t>(bitmap->image->width + bitmap->image->height + 2);
+    }
+    return std::max<std::size_t>(tests, 1);
+}
+
+ReferencePlan plan_reference(const Scene& scene, const DeviceLimits& limits) {
+    ReferencePlan plan;
+    plan.rays = reference_rays(scene.render.quality);
+    plan.tests_per_ray = tests_per_ray(scene.shapes);
+    // Half, since a loop's last test may count as well.
+    const std::size_t most = limits.max_loop_iterations == 0 ? std::size_t(1) << 24
+                                                             : static_cast<std::size_t>(limits.max_loop_iterations) / 2;
+    const std::size_t cost = 1 + plan.tests_per_ray;
+    if (cost > most)
+        throw DeviceError("The scene has too many edges for the method 'reference' on this device: a ray meets up to " +
+                          std::to_string(plan.tests_per_ray) + ", and its loops end after " +
+                          std::to_string(limits.max_loop_iterations) + " iterations.");
+    plan.rays_per_dispatch = static_cast<int>(std::clamp<std::size_t>(most / cost, 1, static_cast<std::size_t>(plan.rays)));
+    return plan;
+}
 
 double brightest_emission(const Shape& shape) {
     if (const auto* bitmap = std::get_if<Bitmap>(&shape.geometry)) return bitmap->as_albedo ? 0.0 : bitmap->emission_scale;
@@ -27,7 +61,7 @@ std::vector<ShapeSlice> slice_shapes(const std::vector<Shape>& shapes) {
     std::vector<ShapeSlice> slices;
     std::size_t spent = 0;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        const std::size_t cost = 1 + edge_count(shapes[i]);
+        const std::size_t cost = distance_iterations(shapes[i]);
         if (slices.empty() || spent + cost > kIterationsPerSlice) {
             slices.push_back({static_cast<int>(i), static_cast<int>(i)});
             spent = 0;
@@ -56,6 +90,15 @@ CascadeSettings cascade_settings(Quality quality) {
         case Quality::high: return {0.5, 1.2, 1};
     }
     return {};
+}
+
+int reference_rays(Quality quality) {
+    switch (quality) {
+        case Quality::draft: return 64;
+        case Quality::standard: return 256;
+        case Quality::high: return 1024;
+    }
+    return 256;
 }
 
 std::vector<CascadePlan> plan_cascades(glm::ivec2 canvas, double diagonal_px, const CascadeSettings& settings) {
@@ -108,8 +151,9 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
     Plan plan;
     plan.canvas = {scene.canvas.width, scene.canvas.height};
     plan.grid = plan_grid(scene.canvas);
-    plan.method = "rc";
-    plan.method_reason = scene.render.method == "auto" ? "the only method of this version" : "asked for";
+    const bool brute_force = scene.render.method == "reference";
+    plan.method = brute_force ? "reference" : "rc";
+    plan.method_reason = scene.render.method == "auto" ? "the fastest method of this version" : "asked for";
 
     double peak = brightest(scene.sky);
     bool has_bitmaps = false;
@@ -122,15 +166,18 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
         plan.skipped.push_back({"distance pass", "the scene has no shapes: every distance is the diagonal", double(area(plan.grid.size))});
     }
     plan.shape_slices = slice_shapes(scene.shapes);
-    if (has_bitmaps)
+    if (has_bitmaps && !brute_force)
         plan.jump_steps = plan_jumps(plan.grid.size);
     else
-        plan.skipped.push_back({"jump flooding", "the scene has no bitmaps", double(area(plan.grid.size)) * double(plan_jumps(plan.grid.size).size())});
+        plan.skipped.push_back({"jump flooding", has_bitmaps ? "rays meet bitmaps texel by texel" : "the scene has no bitmaps", double(area(plan.grid.size)) * double(plan_jumps(plan.grid.size).size())});
 
     const CascadeSettings settings = cascade_settings(scene.render.quality);
-    plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
+    if (brute_force && peak > 0)
+        plan.reference = plan_reference(scene, limits);
+    else
+        plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
     if (peak <= 0) {
-        plan.skipped.push_back({"cascades", "nothing emits light", double(area(plan.canvas)) * double(plan.cascades.size())});
+        plan.skipped.push_back({brute_force ? "rays" : "cascades", "nothing emits light", double(area(plan.canvas)) * double(plan.cascades.size())});
         plan.cascades.clear();
     }
     plan.resolve = !plan.cascades.empty() && (settings.spacing_px != 1.0 || settings.base_tiles != 1);
@@ -139,15 +186,16 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
 
     std::size_t largest_area = area(plan.canvas);
     for (const CascadePlan& c : plan.cascades) largest_area = std::max(largest_area, area(c.texture));
-    plan.half_floats = largest_area * 16 > kFullFloatBytes;
+    plan.half_floats = !plan.cascades.empty() && largest_area * 16 > kFullFloatBytes;
     if (plan.half_floats) plan.radiance_scale = peak > 0 ? peak : 1.0;
     const std::size_t texel = plan.half_floats ? 8 : 16;
     check_size(plan.grid.size, 4, limits, "distance field");
     for (const CascadePlan& c : plan.cascades) check_size(c.texture, texel, limits, "cascade");
 
     plan.gpu_bytes = 8 * area(plan.grid.size) + 4 * area(plan.canvas);
-    if (has_bitmaps) plan.gpu_bytes += 8 * area(plan.grid.size);
+    if (!plan.jump_steps.empty()) plan.gpu_bytes += 8 * area(plan.grid.size);
     if (!plan.cascades.empty()) plan.gpu_bytes += 2 * largest_area * texel;
+    if (plan.reference.rays > 0) plan.gpu_bytes += 16 * area(plan.canvas);
     if (plan.resolve) plan.gpu_bytes += area(plan.canvas) * texel;
     return plan;
 }

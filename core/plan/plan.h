@@ -47,6 +47,13 @@ struct ShapeSlice {
     int end = 0;
 };
 
+// Brute force: `rays` stratified rays a pixel, a few per dispatch, since Mesa before 25 ends loops.
+struct ReferencePlan {
+    int rays = 0;  // 0: not this method
+    int rays_per_dispatch = 0;
+    std::size_t tests_per_ray = 1;  // shapes, edges and bitmap texels along a ray
+};
+
 struct Plan {
     std::string method;
     std::string method_reason;
@@ -55,6 +62,7 @@ struct Plan {
     std::vector<ShapeSlice> shape_slices;
     std::vector<int> jump_steps;        // of jump flooding, empty without bitmaps
     std::vector<CascadePlan> cascades;  // [0] is the nearest; empty when no light can arrive
+    ReferencePlan reference;
     bool resolve = false;               // false: cascade 0 already is the mean radiance per pixel
     bool half_floats = false;           // cascades in 16 bits, emission scaled to [0, 1]
     double radiance_scale = 1;          // emission is divided by this before it is packed
@@ -69,6 +77,9 @@ struct CascadeSettings {
     int base_tiles = 1;       // direction groups of cascade 0 along each axis: 4 * base_tiles^2 rays
 };
 CascadeSettings cascade_settings(Quality quality);
+
+// Rays a pixel of the method `reference`.
+int reference_rays(Quality quality);
 
 // The cascades that cover a domain of this diagonal. n = ceil(log4(1 + 3 D / t0)): errata E-3, E-10.
 std::vector<CascadePlan> plan_cascades(glm::ivec2 canvas, double diagonal_px, const CascadeSettings& settings);

@@ -13,10 +13,10 @@ constexpr double kPi = std::numbers::pi;
 
 // Elements at a piece's ends start at this share of the full length and grow by this factor: a
 // geometric mesh resolves the bend of radiance in a corner (Babuska's h-version grading).
-constexpr double kEndShare = 1.0 / 16;
+constexpr double kEndShare = 1.0 / 64;
 constexpr double kGrowth = 1.5;
 // Shadow edges of delta lights are pinned down to this share of an element.
-constexpr double kEdgeShare = 1.0 / 256;
+constexpr double kEdgeShare = 1.0 / 4096;
 // Curved elements turn by at most this much, so that a chord stands for them.
 constexpr double kLargestTurn = 2 * kPi / 64;
 constexpr int kFewestElements = 4;
@@ -75,20 +75,18 @@ Elements::Elements(const Boundary& boundary, const DeltaLights& lights, double l
     first_.push_back(0);
     for (std::size_t i = 0; i < boundary.pieces().size(); ++i) {
         const Piece& piece = boundary.pieces()[i];
-        if (boundary.material_of(piece).albedo != Colour(0)) cut(std::int32_t(i), lights, length, sweep);
-        else {
-            knots_.push_back(0);
-            knot_points_.push_back(piece.a);
-        }
-        first_.push_back(std::int32_t(elements_.size()));
+        const bool reflects = boundary.material_of(piece).albedo != Colour(0);
+        append(std::int32_t(i), reflects ? first_knots(std::int32_t(i), lights, length, sweep)
+                                         : std::vector<double>{piece.t0});
     }
 }
 
-void Elements::cut(std::int32_t index, const DeltaLights& lights, double length, Sweep& sweep) {
+std::vector<double> Elements::first_knots(std::int32_t index, const DeltaLights& lights, double length,
+                                          Sweep& sweep) const {
     const Piece& piece = boundary_.pieces()[std::size_t(index)];
     const double whole = arc_length(piece, piece.t0, piece.t1);
-    const double turn = piece.is_arc ? (piece.t1 - piece.t0) / kLargestTurn : 0.0;
-    const double full = std::min({length, whole / kFewestElements, turn > 0 ? whole / turn : length});
+    const double turns = piece.is_arc ? (piece.t1 - piece.t0) / kLargestTurn : 0.0;
+    const double full = std::min({length, whole / kFewestElements, turns > 0 ? whole / turns : length});
     // Half the piece from its end, growing; mirrored for the other half.
     std::vector<double> half;
     double place = 0, step = std::max(full * kEndShare, length * kEndShare * 0.25);
@@ -97,67 +95,124 @@ void Elements::cut(std::int32_t index, const DeltaLights& lights, double length,
         place += std::min(step, full);
         step *= kGrowth;
     }
-    const double stretch = 0.5 * whole / place;  // so that a knot falls on the middle
-    std::vector<double> shares;
-    for (const double at : half) shares.push_back(at * stretch / whole);
-    shares.push_back(0.5);
-    for (std::size_t i = half.size(); i-- > 0;) shares.push_back(1 - half[i] * stretch / whole);
-
+    const double stretch = 0.5 / place;  // so that a knot falls on the middle
     const auto parameter = [&](double share) { return piece.t0 + (piece.t1 - piece.t0) * share; };
     std::vector<double> knots;
-    for (const double share : shares) knots.push_back(parameter(share));
-    if (!lights.empty()) {
-        const auto lit_set = [&](double t) {
-            const Point p = piece.at(t);
-            const Point normal = unit(turned(piece.tangent(t)));
-            return lights.lit_set(p, normal, sweep.look(p, normal, boundary_.tolerance(), true));
-        };
-        const double least = kEdgeShare * length / whole * (piece.t1 - piece.t0);
-        std::vector<double> refined;
-        const std::function<void(double, double, std::uint64_t, std::uint64_t)> refine =
-            [&](double low, double high, std::uint64_t at_low, std::uint64_t at_high) {
+    for (const double at : half) knots.push_back(parameter(at * stretch));
+    knots.push_back(parameter(0.5));
+    for (std::size_t i = half.size(); i-- > 0;) knots.push_back(i == 0 ? piece.t1 : parameter(1 - half[i] * stretch));
+    if (lights.empty()) return knots;
+
+    const auto lit_set = [&](double t) {
+        const Point p = piece.at(t);
+        const Point normal = unit(turned(piece.tangent(t)));
+        return lights.lit_set(p, normal, sweep.look(p, normal, 4 * boundary_.tolerance(), true));
+    };
+    const double least = kEdgeShare * length / whole * (piece.t1 - piece.t0);
+    std::vector<double> refined;
+    const std::function<void(double, double, std::uint64_t, std::uint64_t)> refine =
+        [&](double low, double high, std::uint64_t at_low, std::uint64_t at_high) {
+            if (at_low == at_high || high - low <= least) {
                 refined.push_back(low);
-                if (at_low == at_high || high - low <= least) return;
-                refined.pop_back();
-                const double middle = 0.5 * (low + high);
-                const std::uint64_t at_middle = lit_set(middle);
-                refine(low, middle, at_low, at_middle);
-                refine(middle, high, at_middle, at_high);
-            };
-        // The ends themselves touch other pieces: ask a little inside.
-        const double inset = 1e-3 * (knots[1] - knots[0]);
-        std::vector<std::uint64_t> sets;
-        for (const double t : knots) sets.push_back(lit_set(std::clamp(t, piece.t0 + inset, piece.t1 - inset)));
-        for (std::size_t i = 0; i + 1 < knots.size(); ++i) refine(knots[i], knots[i + 1], sets[i], sets[i + 1]);
-        refined.push_back(knots.back());
-        knots = std::move(refined);
-    }
+                return;
+            }
+            const double middle = 0.5 * (low + high);
+            const std::uint64_t at_middle = lit_set(middle);
+            refine(low, middle, at_low, at_middle);
+            refine(middle, high, at_middle, at_high);
+        };
+    // The ends themselves touch other pieces: ask a little inside.
+    const double inset = 1e-3 * (knots[1] - knots[0]);
+    std::vector<std::uint64_t> sets;
+    for (const double t : knots) sets.push_back(lit_set(std::clamp(t, piece.t0 + inset, piece.t1 - inset)));
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i) refine(knots[i], knots[i + 1], sets[i], sets[i + 1]);
+    refined.push_back(knots.back());
+    return refined;
+}
+
+void Elements::append(std::int32_t index, const std::vector<double>& knots) {
+    const Piece& piece = boundary_.pieces()[std::size_t(index)];
     double run = 0;
-    const Colour emission = boundary_.material_of(piece).emission;
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
         const double middle = 0.5 * (knots[i] + knots[i + 1]);
-        const double size = arc_length(piece, knots[i], knots[i + 1]);
         Element element;
         element.middle = piece.at(middle);
         element.tangent = unit(piece.tangent(middle));
         element.normal = turned(element.tangent);
         element.piece = index;
-        element.place = run + 0.5 * size;
-        element.radiance = emission;
+        element.size = arc_length(piece, knots[i], knots[i + 1]);
+        element.place = run + 0.5 * element.size;
+        element.radiance = element.mean = boundary_.material_of(piece).emission;
         elements_.push_back(element);
-        run += size;
+        run += element.size;
     }
     for (const double t : knots) {
         knots_.push_back(t);
         knot_points_.push_back(piece.at(t));
     }
+    first_.push_back(std::int32_t(elements_.size()));
 }
 
-void Elements::find_slopes() {
+bool Elements::refine(double share, double least_size) {
+    double reflected = 0, length = 0;
+    for (const Element& e : elements_) {
+        const Colour own = e.radiance - boundary_.material_of(boundary_.pieces()[std::size_t(e.piece)]).emission;
+        reflected += e.size * std::max({own.r, own.g, own.b});
+        length += e.size;
+    }
+    if (reflected == 0) return false;
+    const double allowed = share * reflected / length;
+    std::vector<bool> bends(elements_.size(), false);
+    bool any = false;
+    for (std::size_t i = 1; i + 1 < elements_.size(); ++i) {
+        const Element& e = elements_[i];
+        const Element& before = elements_[i - 1];
+        const Element& after = elements_[i + 1];
+        if (before.piece != e.piece || after.piece != e.piece) continue;
+        const Colour back = (e.radiance - before.radiance) / (e.place - before.place);
+        const Colour on = (after.radiance - e.radiance) / (after.place - e.place);
+        for (int c = 0; c < 3; ++c) {
+            if (std::abs(on[c] - back[c]) * e.size / 8 <= allowed) continue;
+            // A kink may lie in a neighbour: its bend shows here too.
+            for (std::size_t k = i - 1; k <= i + 1; ++k) {
+                if (elements_[k].size < 2 * least_size) continue;
+                bends[k] = any = true;
+            }
+        }
+    }
+    if (!any) return false;
+    const std::vector<std::int32_t> first = std::move(first_);
+    const std::vector<double> knots = std::move(knots_);
+    elements_.clear();
+    knots_.clear();
+    knot_points_.clear();
+    first_ = {0};
+    for (std::size_t i = 0; i + 1 < first.size(); ++i) {
+        std::vector<double> own;
+        for (auto e = std::size_t(first[i]); e < std::size_t(first[i + 1]); ++e) {
+            const double low = knots[e + i], high = knots[e + i + 1];
+            own.push_back(low);
+            if (bends[e]) own.push_back(0.5 * (low + high));
+        }
+        own.push_back(knots[std::size_t(first[i + 1]) + i]);
+        append(std::int32_t(i), own);
+    }
+    return true;
+}
+
+void Elements::restart() {
+    for (Element& e : elements_) {
+        e.radiance = e.mean = boundary_.material_of(boundary_.pieces()[std::size_t(e.piece)]).emission;
+        e.slope = Colour(0);
+    }
+}
+
+void Elements::reconstruct() {
     for (std::size_t i = 0; i < elements_.size(); ++i) {
         Element& e = elements_[i];
         const Element* before = i > 0 && elements_[i - 1].piece == e.piece ? &elements_[i - 1] : nullptr;
         const Element* after = i + 1 < elements_.size() && elements_[i + 1].piece == e.piece ? &elements_[i + 1] : nullptr;
+        e.mean = e.radiance;
         if (!before && !after) continue;
         const double back = before ? e.place - before->place : 0;
         const double on = after ? after->place - e.place : 0;
@@ -166,7 +221,12 @@ void Elements::find_slopes() {
             const double rise_on = after ? (after->radiance[c] - e.radiance[c]) / on : 0;
             if (!before) e.slope[c] = rise_on;
             else if (!after) e.slope[c] = rise_back;
-            else e.slope[c] = limited(rise_back, rise_on, on / (back + on), back / (back + on));
+            else {
+                e.slope[c] = limited(rise_back, rise_on, on / (back + on), back / (back + on));
+                // A parabola's mean is its middle plus a 24th of its bend: fourth order seen from afar.
+                const double bend = 2 * (rise_on - rise_back) / (back + on);
+                e.mean[c] = std::max(e.radiance[c] + bend * e.size * e.size / 24, 0.0);
+            }
         }
     }
 }
@@ -206,7 +266,7 @@ Colour Gather::fluence(Point p, const std::vector<Interval>& seen) const {
         } else if (elements && elements->has(interval.piece)) {
             elements->walk(interval, p, [&](const Elements::Element& e, Point from, Point to) {
                 const double angle = std::max(std::atan2(cross(from, to), dot(from, to)), 0.0);
-                sum += angle * (e.radiance + e.slope * mean_offset(from, to, e.middle - p, e.tangent));
+                sum += angle * (e.mean + e.slope * mean_offset(from, to, e.middle - p, e.tangent));
             });
         } else {
             const Material& material = boundary.material_of(boundary.pieces()[std::size_t(interval.piece)]);
@@ -244,7 +304,7 @@ Colour Gather::irradiance(Point p, Point normal, const std::vector<Interval>& se
                 const double weight = after - before;
                 before = after;
                 if (weight <= 0) return;
-                sum += weight * (e.radiance + e.slope * mean_offset(from, to, e.middle - p, e.tangent));
+                sum += weight * (e.mean + e.slope * mean_offset(from, to, e.middle - p, e.tangent));
             });
         } else {
             sum += (end - start) * boundary.material_of(boundary.pieces()[std::size_t(interval.piece)]).emission;
@@ -254,22 +314,33 @@ Colour Gather::irradiance(Point p, Point normal, const std::vector<Interval>& se
 }
 
 bool reflect(Elements& elements, const Boundary& boundary, const SkyIntegral& sky, const DeltaLights& lights,
-             int bounces, const Parallel& parallel) {
+             int bounces, const Refinement& refinement, const Parallel& parallel) {
     const Gather gather{boundary, sky, &elements};
-    std::vector<Colour> next(elements.count());
-    std::vector<Colour> from_lights(elements.count(), Colour(0));
-    for (int bounce = 0; bounce < bounces; ++bounce) {
+    std::vector<Colour> next, from_lights;
+    const auto round = [&](bool is_first) {
+        next.resize(elements.count());
+        from_lights.resize(elements.count(), Colour(0));
         const bool done = parallel(elements.count(), [&](std::size_t i, Sweep& sweep) {
             const Elements::Element& e = elements.all()[i];
             const auto& seen = sweep.look(e.middle, e.normal, 4 * boundary.tolerance(), true);
-            if (bounce == 0) from_lights[i] = lights.irradiance(e.middle, e.normal, seen);
+            if (is_first) from_lights[i] = lights.irradiance(e.middle, e.normal, seen);
             const Material& material = boundary.material_of(boundary.pieces()[std::size_t(e.piece)]);
             const Colour arriving = gather.irradiance(e.middle, e.normal, seen) + from_lights[i];
             next[i] = material.emission + 0.5 * material.albedo * arriving;
         });
         if (!done) return false;
         for (std::size_t i = 0; i < next.size(); ++i) elements.all()[i].radiance = next[i];
-        elements.find_slopes();
+        elements.reconstruct();
+        return true;
+    };
+    // The first bounce has the sharpest edges: it shows where elements must be short.
+    for (int i = 0; i < refinement.rounds; ++i) {
+        if (!round(true)) return false;
+        if (!elements.refine(refinement.share, refinement.least_size)) break;
+    }
+    elements.restart();
+    for (int bounce = 0; bounce < bounces; ++bounce) {
+        if (!round(bounce == 0)) return false;
     }
     return true;
 }

@@ -27,14 +27,23 @@ public:
         Point middle{0}, normal{0}, tangent{0};
         std::int32_t piece = 0;
         double place = 0;  // of its middle along the piece, world units
-        Colour radiance{0};
-        Colour slope{0};   // change of radiance per world unit along `tangent`
+        double size = 0;   // its length
+        Colour radiance{0};  // at its middle
+        Colour mean{0};      // over its length
+        Colour slope{0};     // change of radiance per world unit along `tangent`
     };
     std::vector<Element>& all() { return elements_; }
     const std::vector<Element>& all() const { return elements_; }
 
-    // Slopes from neighbours on the same piece, limited so that jumps make no overshoot.
-    void find_slopes();
+    void restart();  // back to emission alone
+
+    // Means and slopes from the radiance of neighbours on the same piece; slopes are limited so that
+    // jumps make no overshoot.
+    void reconstruct();
+
+    // Halves the elements across which radiance bends by more than `share` of the mean reflected
+    // radiance (edges of penumbras, corners). False when there are none.
+    bool refine(double share, double least_size);
 
     // visit(element, from, to): the parts of elements within an interval that shows `piece`, ends
     // relative to `p`, in order of the interval.
@@ -42,7 +51,8 @@ public:
     void walk(const Interval& interval, Point p, const Visit& visit) const;
 
 private:
-    void cut(std::int32_t index, const DeltaLights& lights, double length, Sweep& sweep);
+    std::vector<double> first_knots(std::int32_t index, const DeltaLights& lights, double length, Sweep& sweep) const;
+    void append(std::int32_t index, const std::vector<double>& knots);
 
     const Boundary& boundary_;
     std::vector<std::int32_t> first_;  // by piece, one more than pieces
@@ -63,9 +73,17 @@ struct Gather {
     Colour irradiance(Point p, Point normal, const std::vector<Interval>& seen) const;
 };
 
+// What `reflect` does before it solves: at most so many rounds that halve elements, down to this size in
+// world units, where radiance bends by more than this share of its mean.
+struct Refinement {
+    int rounds = 5;
+    double least_size = 0;
+    double share = 3e-5;
+};
+
 // Runs `bounces` rounds of reflection. `parallel(count, body)` runs body(index, sweep) for each index.
 using Parallel = std::function<bool(std::size_t, const std::function<void(std::size_t, Sweep&)>&)>;
 bool reflect(Elements& elements, const Boundary& boundary, const SkyIntegral& sky, const DeltaLights& lights,
-             int bounces, const Parallel& parallel);
+             int bounces, const Refinement& refinement, const Parallel& parallel);
 
 }  // namespace penumbra::reference

@@ -30,7 +30,7 @@ struct Share {
 };
 
 // Runs body(0) ... body(count - 1) on several threads, each with its own Sweep. False when cancelled.
-bool run_parallel(const Boundary& boundary, std::size_t count, const SolveOptions& options, Share share,
+bool run_parallel(const Sweep& fresh, std::size_t count, const SolveOptions& options, Share share,
                   const std::function<void(std::size_t, Sweep&)>& body) {
     const unsigned processors = std::max(1u, std::thread::hardware_concurrency());
     const std::size_t wanted = options.threads > 0 ? std::size_t(options.threads) : processors;
@@ -43,7 +43,7 @@ bool run_parallel(const Boundary& boundary, std::size_t count, const SolveOption
     std::exception_ptr failure;
     const auto work = [&] {
         try {
-            Sweep sweep(boundary);
+            Sweep sweep = fresh;
             for (std::size_t i = next++; i < count && !stop; i = next++) {
                 body(i, sweep);
                 ++finished;
@@ -74,11 +74,14 @@ bool run_parallel(const Boundary& boundary, std::size_t count, const SolveOption
     return !stop;
 }
 
-bool is_bright(const SkyIntegral& sky, const Boundary& boundary) {
-    if (!sky.is_black()) return true;
-    return std::any_of(boundary.pieces().begin(), boundary.pieces().end(), [&](const Piece& piece) {
-        return boundary.material_of(piece).emission != Colour(0);
-    });
+// By piece: whether it sends light, by itself or with bounces.
+std::vector<char> shining_pieces(const Boundary& boundary, bool reflecting) {
+    std::vector<char> shining;
+    for (const Piece& piece : boundary.pieces()) {
+        const Material& material = boundary.material_of(piece);
+        shining.push_back(material.emission != Colour(0) || (reflecting && material.albedo != Colour(0)));
+    }
+    return shining;
 }
 
 }  // namespace
@@ -92,6 +95,8 @@ struct ExactSolver::State {
     std::optional<Elements> elements;
     bool cancelled = false;
     Share pixels_share;
+    bool is_black = false;  // nothing shines
+    std::vector<char> shining;
     Sweep sweep;
 
     State(const Scene& given, const SolveOptions& with)
@@ -100,21 +105,36 @@ struct ExactSolver::State {
           boundary(scene, with.max_pieces, scene.render.bounces > 0),
           sky(scene.sky),
           lights(scene, boundary),
-          sweep(boundary) {
-        if (!boundary.problems().empty() || scene.render.bounces <= 0) return;
-        if (!is_bright(sky, boundary) && lights.empty()) return;
+          shining(shining_pieces(boundary, false)),
+          sweep(fresh_sweep()) {
+        is_black = needs_only_shining() && std::find(shining.begin(), shining.end(), 1) == shining.end();
+        if (!boundary.problems().empty() || scene.render.bounces <= 0 || is_black) return;
+        shining = shining_pieces(boundary, true);
         elements.emplace(boundary, lights, options.element_length_px * scene.canvas.pixel_size());
+        reflect_all();
+    }
+
+    // The sky and delta lights ask what every direction meets; emitters only where they can be seen.
+    bool needs_only_shining() const { return sky.is_black() && lights.empty(); }
+    Sweep fresh_sweep() const { return Sweep(boundary, needs_only_shining() ? &shining : nullptr); }
+
+    void reflect_all() {
+        // Progress: gathers and pixels cost about the same. Refinement runs as many rounds as it needs
+        // and grows the count of elements, so its part is a guess that never runs backwards.
         const double stride = std::max(options.stride, 1);
         const double pixels = double(scene.canvas.width) * scene.canvas.height / (stride * stride);
-        const double gathers = double(elements->count()) * scene.render.bounces;
-        const double total = std::max(pixels + gathers, 1.0);
-        pixels_share = {gathers / total, pixels / total};
+        const int bounces = scene.render.bounces;
+        const Refinement refinement{5, options.element_length_px * scene.canvas.pixel_size() / 32, 3e-5};
+        const double rounds = bounces + refinement.rounds;
+        const double gathers = 1.5 * double(elements->count()) * rounds;
+        const double part = gathers / std::max(pixels + gathers, 1.0);
+        pixels_share = {part, 1 - part};
         int round = 0;
-        cancelled = !reflect(*elements, boundary, sky, lights, scene.render.bounces,
+        cancelled = !reflect(*elements, boundary, sky, lights, bounces, refinement,
                              [&](std::size_t count, const std::function<void(std::size_t, Sweep&)>& body) {
-                                 const Share share{round * double(count) / total, double(count) / total};
+                                 const Share share{part * round / rounds, part / rounds};
                                  ++round;
-                                 return run_parallel(boundary, count, options, share, body);
+                                 return run_parallel(fresh_sweep(), count, options, share, body);
                              });
     }
 
@@ -123,12 +143,14 @@ struct ExactSolver::State {
     static constexpr Point forward() { return {1, 0}; }
 
     Colour mean_radiance(Point p, Sweep& with) const {
+        if (is_black) return Colour(0);
         const auto& seen = with.look(p, forward(), 0, false);
         return gather().fluence(p, seen) / (2 * std::numbers::pi);
     }
 
     // What a free pixel holds, and from how many intervals of direction.
     Colour value(Point p, Sweep& with, std::size_t& intervals) const {
+        if (is_black) return Colour(0);
         const auto& seen = with.look(p, forward(), 0, false);
         intervals = seen.size();
         Colour sum = gather().fluence(p, seen) / (2 * std::numbers::pi);
@@ -188,7 +210,7 @@ Solution solve(const Scene& scene, const SolveOptions& options) {
     const ViewRect view = canvas.view_or_default();
     std::atomic<std::uint64_t> intervals{0};
     const bool complete = run_parallel(
-        state.boundary, rows.size(), options, state.pixels_share, [&](std::size_t row, Sweep& sweep) {
+        state.fresh_sweep(), rows.size(), options, state.pixels_share, [&](std::size_t row, Sweep& sweep) {
             const int y = rows[row];
             std::uint64_t in_row = 0;
             for (const int x : columns) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace penumbra::reference {
@@ -58,16 +59,45 @@ bool Sweep::is_nearer(const Span& entering, const Span& active) const {
 }
 
 void Sweep::push(const Span& span) {
-    if (!(span.key_from < span.key_to)) return;
-    const auto index = std::int32_t(spans_.size());
-    spans_.push_back(span);
-    events_.push_back({span.key_from, index, 1});
-    events_.push_back({span.key_to, index, 0});
+    if (span.key_from < span.key_to) spans_.push_back(span);
+}
+
+// Leaves out spans that lie, all along, behind others or behind all that shines. Bins make the test
+// coarse but never wrong: a span hides what is farther in the bins that it covers wholly.
+void Sweep::drop_hidden() {
+    constexpr double kScale = kBins / 4.0;
+    const auto bin = [](double key) { return std::clamp(int((key + 2) * kScale), 0, kBins - 1); };
+    far_.fill(shining_ ? 0 : std::numeric_limits<double>::infinity());
+    if (shining_) {
+        for (const Span& span : spans_) {
+            if (!(*shining_)[std::size_t(span.piece)]) continue;
+            for (int i = bin(span.key_from); i <= bin(span.key_to); ++i) far_[std::size_t(i)] = std::max(far_[std::size_t(i)], span.farthest);
+        }
+    }
+    for (const Span& span : spans_) {
+        const int first = int(std::ceil((span.key_from + 2) * kScale));
+        const int end = std::min(int((span.key_to + 2) * kScale), kBins);
+        for (int i = first; i < end; ++i) far_[std::size_t(i)] = std::min(far_[std::size_t(i)], span.farthest);
+    }
+    for (std::size_t s = 0; s < spans_.size(); ++s) {
+        const Span& span = spans_[s];
+        bool matters = false;
+        for (int i = bin(span.key_from); i <= bin(span.key_to) && !matters; ++i) matters = far_[std::size_t(i)] >= span.nearest;
+        if (!matters) continue;
+        events_.push_back({span.key_from, std::int32_t(s), 1});
+        events_.push_back({span.key_to, std::int32_t(s), 0});
+    }
 }
 
 void Sweep::add_span(Span span, Point from, Point to) {
-    span.from = from / std::sqrt(length_squared(from));
-    span.to = to / std::sqrt(length_squared(to));
+    const double to_from = std::sqrt(length_squared(from));
+    const double to_to = std::sqrt(length_squared(to));
+    span.from = from / to_from;
+    span.to = to / to_to;
+    // An arc bulges towards the observer: no point of it is farther than its ends either. The bounds
+    // give way to rounding.
+    span.farthest = std::max(to_from, to_to) * (1 + 1e-12);
+    span.nearest *= 1 - 1e-12;
     // A span is less than half a turn: with both ends behind, all of it is.
     if (half_ && dot(forward_, span.from) <= 0 && dot(forward_, span.to) <= 0) return;
     span.key_from = direction_key(forward_, span.from);
@@ -96,6 +126,9 @@ void Sweep::add_straight(const Piece& piece, std::int32_t index, double height) 
     span.rise = rise;
     span.data = e;
     span.piece = index;
+    // The foot of the perpendicular, where it lies on the piece, else the nearer end.
+    if (dot(a, e) < 0 && dot(b, e) > 0) span.nearest = -rise / std::sqrt(length_squared(e));
+    else span.nearest = std::sqrt(std::min(length_squared(a), length_squared(b)));
     add_span(span, b, a);
 }
 
@@ -116,6 +149,9 @@ void Sweep::add_arc(const Piece& piece, std::int32_t index, double height) {
     const auto towards = [&](Point e) { return piece.center + piece.u * e.x + piece.v * e.y - p_; };
     Span span{};
     span.is_arc = true;
+    // No ellipse comes nearer than its longer radius lets it.
+    const double reach = std::sqrt(std::max(length_squared(piece.u), length_squared(piece.v)));
+    span.nearest = std::sqrt(length_squared(p_ - piece.center)) - reach;
     span.rise = rise;
     span.data = q;
     span.piece = index;
@@ -145,6 +181,7 @@ const std::vector<Interval>& Sweep::look(Point p, Point forward, double height, 
         if (pieces[i].is_arc) add_arc(pieces[i], std::int32_t(i), height);
         else add_straight(pieces[i], std::int32_t(i), height);
     }
+    drop_hidden();
     run();
     return intervals_;
 }

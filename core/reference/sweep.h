@@ -3,6 +3,7 @@
 // critical angles. Exact up to rounding: within an interval the first piece hit is one and the same.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -30,7 +31,11 @@ double distance_to(const Piece& piece, Point p, Point d);
 // One per thread; it reuses its memory.
 class Sweep {
 public:
-    explicit Sweep(const Boundary& boundary) : boundary_(boundary) {}
+    // `shining` (by piece; null: all, and what lies beyond too) tells which pieces send light. Where
+    // nothing that shines can be seen, intervals may say that the ray leaves the domain instead of
+    // naming a dark piece.
+    explicit Sweep(const Boundary& boundary, const std::vector<char>* shining = nullptr)
+        : boundary_(boundary), shining_(shining) {}
 
     // All round `p`, in order of direction_key(forward, .), from behind `forward` and back.
     // `height`: pieces whose line passes `p` closer than this are left out; a point that lies on
@@ -44,6 +49,7 @@ private:
         double key_from, key_to;
         double rise;     // straight: cross(a - p, b - a); arc: |p'|^2 - 1 in its frame
         Point data;      // straight: b - a; arc: p' in its frame
+        double nearest, farthest;  // bounds on its distance
         std::int32_t piece;
         bool is_arc;
     };
@@ -57,11 +63,17 @@ private:
     void add_arc(const Piece& piece, std::int32_t index, double height);
     void add_span(Span span, Point from, Point to);
     void push(const Span& span);
+    void drop_hidden();
     double distance(const Span& span, Point d) const;
     bool is_nearer(const Span& entering, const Span& active) const;
     void run();
 
+    // Equal steps of direction_key, to tell cheaply what cannot be seen.
+    static constexpr int kBins = 512;
+
     const Boundary& boundary_;
+    const std::vector<char>* shining_;
+    std::array<double, kBins> far_{};  // nothing beyond this distance matters there
     Point p_{0}, forward_{1, 0};
     bool half_ = false;
     std::vector<Span> spans_;

@@ -1,20 +1,10 @@
 // One interval of a ray by sphere tracing over the distance texture, each texel fetched exactly (a linear
 // filter costs half the accuracy: docs/decisions).
+#include "lib/domain.glsl"
 #include "lib/scene.glsl"
 
 layout(binding = kCascadeDistanceUnit) uniform sampler2D distance_texture;
 layout(binding = kCascadeMaterialUnit) uniform isampler2D material_texture;
-
-// Distance along the ray at which it leaves the box (x0 y0 x1 y1); negative when it starts outside.
-float exit_distance(vec2 p, vec2 d, vec4 box) {
-    vec2 lo = (box.xy - p) / d;
-    vec2 hi = (box.zw - p) / d;
-    vec2 leave = max(lo, hi);
-    // A component of 0 never leaves through its sides.
-    if (d.x == 0.0) leave.x = kFar;
-    if (d.y == 0.0) leave.y = kFar;
-    return min(leave.x, leave.y);
-}
 
 const int kRayPassed = 0;   // free to its end
 const int kRayBlocked = 1;  // met a shape, or ran out of steps
@@ -28,14 +18,27 @@ const float kHalfDiagonal = 0.7072;
 // Nearest to a surface, steps are no shorter than this: a wall must be as thick to be seen from every angle.
 const float kShortestStep = 0.25;
 
-// Radiance met between start and end along the ray.
-int march(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, out vec3 radiance) {
+// The distance at p, interpolated between the four nearest pixel centres: exact beside a straight edge.
+float interpolated_distance(vec2 p, ivec2 border, ivec2 last_pixel) {
+    vec2 q = p - 0.5;
+    ivec2 base = ivec2(floor(q));
+    vec2 f = q - vec2(base);
+    ivec2 lo = clamp(base + border, ivec2(0), last_pixel);
+    ivec2 hi = clamp(base + border + 1, ivec2(0), last_pixel);
+    float top = mix(texelFetch(distance_texture, lo, 0).r, texelFetch(distance_texture, ivec2(hi.x, lo.y), 0).r, f.x);
+    float bottom = mix(texelFetch(distance_texture, ivec2(lo.x, hi.y), 0).r, texelFetch(distance_texture, hi, 0).r, f.x);
+    return mix(top, bottom, f.y);
+}
+
+// Radiance met between start and end along the ray. Spends of the invocation's loop iterations.
+int march(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, inout int budget, out vec3 radiance) {
     radiance = vec3(0.0);
     float leave = exit_distance(p, d, domain);
     float stop = min(end, leave);
     float t = start;
     ivec2 last_pixel = textureSize(distance_texture, 0) - 1;
-    for (int i = 0; i < kMaxMarchSteps; ++i) {
+    while (budget > 0) {
+        --budget;
         if (t >= stop) return leave <= end ? kRayLeft : kRayPassed;
         vec2 at = p + d * t;
         ivec2 pixel = clamp(ivec2(floor(at)) + border, ivec2(0), last_pixel);
@@ -48,11 +51,17 @@ int march(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, out
         int shape = texelFetch(material_texture, pixel, 0).r;
         if (shape >= 0) {
             vec4 head = texelFetch(shape_records, shape * kShapeTexels);
-            bool bitmap = int(head.x) == kShapeBitmap;
-            float exact = bitmap ? room : shape_distance(shape, at, kFar) - head.y;
+            int type = int(head.x);
+            float exact = room;
+            if (head.w > float(kMostMarchedEdges)) {
+                exact = interpolated_distance(at, border, last_pixel) - head.y;
+            } else if (type != kShapeBitmap) {
+                exact = shape_distance(shape, at, kFar) - head.y;
+                budget -= type == kShapeEllipse ? kEllipseIterations : int(head.w);
+            }
             if (exact <= 0.0) {
                 radiance = shape_emission(shape, vec2(pixel - border) + 0.5);
-                if (!bitmap) radiance *= texelFetch(shape_records, shape * kShapeTexels + 1).w;
+                if (type != kShapeBitmap) radiance *= texelFetch(shape_records, shape * kShapeTexels + 1).w;
                 return kRayBlocked;
             }
             // Another shape may be nearer here than at the pixel's centre: stay within the pixel.

@@ -34,7 +34,7 @@ float ellipse_distance(vec2 p, vec2 r) {
         vec2 q = vec2(r.x * x, r.y * sqrt(max(1.0 - x * x, 0.0)));
         return -length(q - p);
     }
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < kEllipseIterations; ++i) {
         vec2 d = vec2(t + ratio, t + 1.0);
         vec2 a = vec2(ratio * z.x, z.y) / max(d, vec2(1e-20));
         float f = dot(a, a) - 1.0;
