@@ -224,8 +224,11 @@ void Elements::reconstruct() {
             else {
                 e.slope[c] = limited(rise_back, rise_on, on / (back + on), back / (back + on));
                 // A parabola's mean is its middle plus a 24th of its bend: fourth order seen from afar.
+                // Next to a jump one of the two differences is small, and so is the correction.
                 const double bend = 2 * (rise_on - rise_back) / (back + on);
-                e.mean[c] = std::max(e.radiance[c] + bend * e.size * e.size / 24, 0.0);
+                const double most = 0.5 * std::min(std::abs(rise_back) * back, std::abs(rise_on) * on);
+                const double more = std::clamp(bend * e.size * e.size / 24, -most, most);
+                e.mean[c] = std::max(e.radiance[c] + more, 0.0);
             }
         }
     }
