@@ -38,7 +38,7 @@ std::string as_text(const DeviceInfo& device, const std::vector<DeviceListing>& 
     line("formats", format_names());
     text += "devices:\n";
     for (const DeviceListing& entry : listing) {
-        text += "  " + std::to_string(entry.index) + "  " + entry.name + (entry.software ? " (software)" : "") + "\n";
+        text += "  " + std::to_string(entry.index) + "  " + entry.name + "\n";
     }
     return text;
 }

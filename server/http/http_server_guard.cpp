@@ -23,6 +23,8 @@ constexpr milliseconds kLookUp{100};
 constexpr milliseconds kPatienceWhenBusy{1000};
 // A client that is refused in the middle of its body reads the answer only when it stops sending.
 constexpr milliseconds kLingerTime{2000};
+// One that was too slow gets little more of a thread's time.
+constexpr milliseconds kLingerTimeOfSlow{200};
 constexpr std::size_t kBufferBytes = 16u << 10;
 
 thread_local Exchange* t_exchange = nullptr;
@@ -82,7 +84,8 @@ void GuardedStream::begin(Exchange& exchange) {
 
 void GuardedStream::linger() {
     ::shutdown(socket_, SHUT_WR);
-    const Clock::time_point deadline = Clock::now() + kLingerTime;
+    const bool slow = exchange_->fault == Fault::timeout;
+    const Clock::time_point deadline = Clock::now() + (slow ? kLingerTimeOfSlow : kLingerTime);
     std::vector<char> waste(kBufferBytes);
     while (until(deadline).count() > 0 && wait_for(socket_, POLLIN, until(deadline))) {
         if (::recv(socket_, waste.data(), waste.size(), 0) <= 0) return;
