@@ -14,11 +14,24 @@ namespace {
 using Stop = std::array<int, 3>;
 
 // The colour map "magma" (S. van der Walt and N. Smith, 2015, CC0) at ten steps.
-constexpr std::array<Stop, 10> kHeat{{{0, 0, 4}, {24, 15, 61}, {68, 15, 118}, {114, 31, 129}, {158, 47, 127},
-                                      {205, 64, 113}, {241, 96, 93}, {253, 150, 104}, {254, 202, 141}, {252, 253, 191}}};
+constexpr std::array<Stop, 10> kHeat{{{0, 0, 4},
+                                      {24, 15, 61},
+                                      {68, 15, 118},
+                                      {114, 31, 129},
+                                      {158, 47, 127},
+                                      {205, 64, 113},
+                                      {241, 96, 93},
+                                      {253, 150, 104},
+                                      {254, 202, 141},
+                                      {252, 253, 191}}};
 // From a strong blue over white to a strong red, even in lightness to both sides.
-constexpr std::array<Stop, 7> kSigned{
-    {{5, 48, 97}, {67, 147, 195}, {180, 214, 235}, {255, 255, 255}, {248, 195, 172}, {214, 96, 77}, {103, 0, 31}}};
+constexpr std::array<Stop, 7> kSigned{{{5, 48, 97},
+                                       {67, 147, 195},
+                                       {180, 214, 235},
+                                       {255, 255, 255},
+                                       {248, 195, 172},
+                                       {214, 96, 77},
+                                       {103, 0, 31}}};
 constexpr std::array<std::uint8_t, 3> kNothing{128, 128, 128};
 constexpr std::array<std::uint8_t, 3> kMissing{0, 160, 60};
 
@@ -30,7 +43,8 @@ std::array<std::uint8_t, 3> colour_at(const std::array<Stop, N>& stops, double s
     const auto low = std::min(std::size_t(place), N - 2);
     std::array<std::uint8_t, 3> out{};
     for (std::size_t c = 0; c < 3; ++c) {
-        const double value = stops[low][c] + (stops[low + 1][c] - stops[low][c]) * (place - double(low));
+        const double value =
+            stops[low][c] + (stops[low + 1][c] - stops[low][c]) * (place - double(low));
         out[c] = std::uint8_t(std::lround(value));
     }
     return out;
@@ -73,7 +87,8 @@ std::variant<Image8, Problem> signed_picture(const ImageF& a, const ImageF& b) {
             }
             const double relative = sum / channels;
             double strength = 0;
-            if (relative != 0) strength = std::clamp(1 + std::log10(std::abs(relative)) / kDecades, 0.0, 1.0);
+            if (relative != 0)
+                strength = std::clamp(1 + std::log10(std::abs(relative)) / kDecades, 0.0, 1.0);
             const double share = 0.5 + (relative > 0 ? 0.5 : -0.5) * strength;
             const auto colour = nothing ? kNothing : missing ? kMissing : colour_at(kSigned, share);
             std::copy(colour.begin(), colour.end(), out.at(x, y));

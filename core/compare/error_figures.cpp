@@ -13,7 +13,9 @@ namespace {
 
 template <class T>
 std::optional<Problem> size_problem(const BasicImage<T>& a, const BasicImage<T>& b) {
-    const auto describe = [](const BasicImage<T>& i) { return std::to_string(i.width) + " x " + std::to_string(i.height); };
+    const auto describe = [](const BasicImage<T>& i) {
+        return std::to_string(i.width) + " x " + std::to_string(i.height);
+    };
     if (a.width == b.width && a.height == b.height) return std::nullopt;
     return Problem{"", "size_differs",
                    "The pictures differ in size: " + describe(a) + " against " + describe(b) + "."};
@@ -34,10 +36,14 @@ double percentile(std::vector<double>& values, double share) {
 std::array<int, 4> rgba_at(const Image8& image, std::size_t pixel) {
     const std::uint8_t* p = image.data.data() + pixel * std::size_t(image.channels);
     switch (image.channels) {
-        case 1: return {p[0], p[0], p[0], 255};
-        case 2: return {p[0], p[0], p[0], p[1]};
-        case 3: return {p[0], p[1], p[2], 255};
-        default: return {p[0], p[1], p[2], p[3]};
+        case 1:
+            return {p[0], p[0], p[0], 255};
+        case 2:
+            return {p[0], p[0], p[0], p[1]};
+        case 3:
+            return {p[0], p[1], p[2], 255};
+        default:
+            return {p[0], p[1], p[2], p[3]};
     }
 }
 
@@ -48,8 +54,8 @@ std::variant<ErrorFigures, Problem> error_figures(const ImageF& a, const ImageF&
     const int channels = std::min(a.channels, 3);
     if (channels != std::min(b.channels, 3) || channels == 0) {
         return Problem{"", "channels_differ",
-                       "The pictures differ in their channels: " + std::to_string(a.channels) + " against " +
-                           std::to_string(b.channels) + "."};
+                       "The pictures differ in their channels: " + std::to_string(a.channels) +
+                           " against " + std::to_string(b.channels) + "."};
     }
     ErrorFigures figures;
     std::vector<std::array<double, 2>> samples;

@@ -13,15 +13,16 @@
 namespace penumbra {
 
 // Each channel (of the first three) of each pixel is a sample. A sample that is NaN in the truth is
-// left out everywhere. A figure that has no meaning (no samples, or relative to a truth that is black
-// all over) is empty.
+// left out everywhere. A figure that has no meaning (no samples, or relative to a truth that is
+// black all over) is empty.
 struct ErrorFigures {
-    std::optional<double> nrmse;    // sqrt(mean (a - b)^2) / mean b
-    std::optional<double> rel;      // mean |a - b| / (b + 0.05 mean b)
-    std::optional<double> p99;      // 99th percentile of |a - b|, over mean b
-    std::optional<double> max;      // largest |a - b|, over mean b
-    std::optional<double> bias;     // (mean a - mean b) / mean b
-    std::optional<double> leak;     // mean of a where b < 1e-6 mean b, over mean b; empty where b is nowhere so dark
+    std::optional<double> nrmse;  // sqrt(mean (a - b)^2) / mean b
+    std::optional<double> rel;    // mean |a - b| / (b + 0.05 mean b)
+    std::optional<double> p99;    // 99th percentile of |a - b|, over mean b
+    std::optional<double> max;    // largest |a - b|, over mean b
+    std::optional<double> bias;   // (mean a - mean b) / mean b
+    std::optional<double>
+        leak;  // mean of a where b < 1e-6 mean b, over mean b; empty where b is nowhere so dark
     std::optional<double> rmse;
     std::optional<double> max_abs;
     std::optional<double> mean_truth;
@@ -33,11 +34,11 @@ struct ErrorFigures {
 std::variant<ErrorFigures, Problem> error_figures(const ImageF& a, const ImageF& b);
 
 struct PixelFigures {
-    int largest = 0;               // difference of a channel, 0 to 255
-    double mean = 0;               // difference of a channel, over all channels and pixels
-    std::uint64_t differing = 0;   // pixels with a difference in any channel
+    int largest = 0;              // difference of a channel, 0 to 255
+    double mean = 0;              // difference of a channel, over all channels and pixels
+    std::uint64_t differing = 0;  // pixels with a difference in any channel
     std::uint64_t pixels = 0;
-    std::optional<double> psnr_db; // empty for equal pictures
+    std::optional<double> psnr_db;  // empty for equal pictures
 };
 
 // Compares as encoded. Grey is taken as equal RGB, a missing alpha as 255.

@@ -21,14 +21,16 @@ using Vec3 = glm::dvec3;
 
 constexpr double kPi = std::numbers::pi;
 
-// Section 4.1: exponents and the remapping of the colour difference; 4.2: width and exponent of features.
-constexpr double kColourExponent = 0.7;   // q_c
-constexpr double kRemapKnee = 0.4;        // p_c
-constexpr double kRemapValue = 0.95;      // p_t
-constexpr double kFeatureExponent = 0.5;  // q_f
+// Section 4.1: exponents and the remapping of the colour difference; 4.2: width and exponent of
+// features.
+constexpr double kColourExponent = 0.7;     // q_c
+constexpr double kRemapKnee = 0.4;          // p_c
+constexpr double kRemapValue = 0.95;        // p_t
+constexpr double kFeatureExponent = 0.5;    // q_f
 constexpr double kFeatureWidthDeg = 0.082;  // w
 
-// Contrast sensitivity as sums of Gaussians  a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees (table 1).
+// Contrast sensitivity as sums of Gaussians  a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees (table
+// 1).
 struct Sensitivity {
     double a1, b1, a2, b2;
 };
@@ -39,9 +41,10 @@ constexpr double kWidestSensitivity = 0.04;
 
 // Linear sRGB to CIE XYZ (D65), columns by primary.
 const glm::dmat3& rgb_to_xyz() {
-    static const glm::dmat3 matrix(10135552.0 / 24577794, 2613072.0 / 12288897, 1425312.0 / 73733382,
-                                   8788810.0 / 24577794, 8788810.0 / 12288897, 8788810.0 / 73733382,
-                                   4435075.0 / 24577794, 887015.0 / 12288897, 70074185.0 / 73733382);
+    static const glm::dmat3 matrix(10135552.0 / 24577794, 2613072.0 / 12288897,
+                                   1425312.0 / 73733382, 8788810.0 / 24577794, 8788810.0 / 12288897,
+                                   8788810.0 / 73733382, 4435075.0 / 24577794, 887015.0 / 12288897,
+                                   70074185.0 / 73733382);
     return matrix;
 }
 const glm::dmat3& xyz_to_rgb() {
@@ -83,7 +86,9 @@ Vec3 rgb_to_hunt_lab(const Vec3& rgb) {
 }
 
 // HyAB: city block in lightness, Euclidean in the chromatic plane; made for large differences.
-double hyab(const Vec3& a, const Vec3& b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
+double hyab(const Vec3& a, const Vec3& b) {
+    return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
+}
 
 struct Plane {
     int width, height;
@@ -114,7 +119,8 @@ Plane filtered(const Plane& in, const Kernel& across, const Kernel& down) {
         for (int x = 0; x < in.width; ++x) {
             double sum = 0;
             for (int k = -across.radius; k <= across.radius; ++k) {
-                sum += across.weight[std::size_t(k + across.radius)] * row[std::clamp(x + k, 0, in.width - 1)];
+                sum += across.weight[std::size_t(k + across.radius)] *
+                       row[std::clamp(x + k, 0, in.width - 1)];
             }
             to[x] = sum;
         }
@@ -133,7 +139,8 @@ Plane filtered(const Plane& in, const Kernel& across, const Kernel& down) {
 
 // A round sum of Gaussians is a sum of two separable filters; the whole is normalised to 1.
 Plane contrast_filtered(const Plane& in, const Sensitivity& s, double pixels_per_degree) {
-    const int radius = int(std::ceil(3 * std::sqrt(kWidestSensitivity / (2 * kPi * kPi)) * pixels_per_degree));
+    const int radius =
+        int(std::ceil(3 * std::sqrt(kWidestSensitivity / (2 * kPi * kPi)) * pixels_per_degree));
     Plane out(in.width, in.height);
     const auto gaussian = [&](double b) {
         Kernel kernel(radius);
@@ -144,12 +151,15 @@ Plane contrast_filtered(const Plane& in, const Sensitivity& s, double pixels_per
         return kernel;
     };
     const Kernel first = gaussian(s.b1), second = gaussian(s.b2);
-    const double scale_first = s.a1 * std::sqrt(kPi / s.b1), scale_second = s.a2 * std::sqrt(kPi / s.b2);
-    const double total = scale_first * first.sum() * first.sum() + scale_second * second.sum() * second.sum();
+    const double scale_first = s.a1 * std::sqrt(kPi / s.b1),
+                 scale_second = s.a2 * std::sqrt(kPi / s.b2);
+    const double total =
+        scale_first * first.sum() * first.sum() + scale_second * second.sum() * second.sum();
     const auto add = [&](const Kernel& kernel, double scale) {
         if (scale == 0) return;
         const Plane part = filtered(in, kernel, kernel);
-        for (std::size_t i = 0; i < out.data.size(); ++i) out.data[i] += scale / total * part.data[i];
+        for (std::size_t i = 0; i < out.data.size(); ++i)
+            out.data[i] += scale / total * part.data[i];
     };
     add(first, scale_first);
     add(second, scale_second);
@@ -187,7 +197,8 @@ Features features_of(const Plane& luminance, double pixels_per_degree) {
         const Plane x = filtered(luminance, kernel, smooth);
         const Plane y = filtered(luminance, smooth, kernel);
         std::vector<double> length(x.data.size());
-        for (std::size_t i = 0; i < length.size(); ++i) length[i] = std::hypot(x.data[i], y.data[i]);
+        for (std::size_t i = 0; i < length.size(); ++i)
+            length[i] = std::hypot(x.data[i], y.data[i]);
         return length;
     };
     out.edges = lengths(edge);
@@ -204,7 +215,8 @@ struct Percept {
 Percept percept_of(const Image8& image, double pixels_per_degree) {
     std::array<double, 256> table{};
     for (int i = 0; i < 256; ++i) table[std::size_t(i)] = decoded(std::uint8_t(i));
-    Plane y(image.width, image.height), cx(image.width, image.height), cz(image.width, image.height);
+    Plane y(image.width, image.height), cx(image.width, image.height),
+        cz(image.width, image.height);
     Plane luminance(image.width, image.height);
     const std::size_t count = y.data.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -230,7 +242,8 @@ Percept percept_of(const Image8& image, double pixels_per_degree) {
     return made;
 }
 
-// Section 4.1.4: the low 40 % of the largest difference (green against blue) spread over 95 % of the range.
+// Section 4.1.4: the low 40 % of the largest difference (green against blue) spread over 95 % of
+// the range.
 double remapped(double difference, double largest) {
     const double knee = kRemapKnee * largest;
     if (difference < knee) return kRemapValue / knee * difference;
@@ -242,8 +255,9 @@ double remapped(double difference, double largest) {
 std::variant<Flip, Problem> flip(const Image8& a, const Image8& b, const FlipOptions& options) {
     if (a.width != b.width || a.height != b.height) {
         return Problem{"", "size_differs",
-                       "The pictures differ in size: " + std::to_string(a.width) + " x " + std::to_string(a.height) +
-                           " against " + std::to_string(b.width) + " x " + std::to_string(b.height) + "."};
+                       "The pictures differ in size: " + std::to_string(a.width) + " x " +
+                           std::to_string(a.height) + " against " + std::to_string(b.width) +
+                           " x " + std::to_string(b.height) + "."};
     }
     const Percept first = percept_of(a, options.pixels_per_degree);
     const Percept second = percept_of(b, options.pixels_per_degree);
@@ -257,7 +271,8 @@ std::variant<Flip, Problem> flip(const Image8& a, const Image8& b, const FlipOpt
             remapped(std::pow(hyab(first.colour[i], second.colour[i]), kColourExponent), largest);
         const double edge = std::abs(first.features.edges[i] - second.features.edges[i]);
         const double point = std::abs(first.features.points[i] - second.features.points[i]);
-        const double feature = std::pow(std::max(edge, point) / std::numbers::sqrt2, kFeatureExponent);
+        const double feature =
+            std::pow(std::max(edge, point) / std::numbers::sqrt2, kFeatureExponent);
         // Features amplify what colour shows (section 4.3).
         const double value = std::clamp(std::pow(colour, 1 - std::min(feature, 1.0)), 0.0, 1.0);
         result.map.data[i] = float(value);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The FLIP difference of two pictures for low dynamic range, written from its paper:
 // P. Andersson, J. Nilsson, T. Akenine-Moeller, M. Oskarsson, K. Astroem, M. D. Fairchild, "FLIP: A
-// Difference Evaluator for Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2), 2020.
+// Difference Evaluator for Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2),
+// 2020.
 #pragma once
 
 #include <variant>

@@ -96,8 +96,10 @@ void add_bitmap(const Bitmap& bitmap, int shape, std::size_t max_pieces, Outline
         if (is_new) {
             const Colour colour{linear[texel[0]], linear[texel[1]], linear[texel[2]]};
             Material material;
-            if (bitmap.as_albedo) material.albedo = colour;
-            else material.emission = colour * bitmap.emission_scale;
+            if (bitmap.as_albedo)
+                material.albedo = colour;
+            else
+                material.emission = colour * bitmap.emission_scale;
             out.materials.push_back(material);
         }
         body.texel_material[i] = place->second;

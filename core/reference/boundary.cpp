@@ -25,7 +25,8 @@ void for_each_pair(const std::vector<Box>& boxes, const Visit& visit) {
     std::vector<std::int32_t> order(boxes.size());
     std::iota(order.begin(), order.end(), 0);
     const auto box = [&](std::int32_t i) -> const Box& { return boxes[std::size_t(i)]; };
-    std::sort(order.begin(), order.end(), [&](auto i, auto j) { return box(i).low.x < box(j).low.x; });
+    std::sort(order.begin(), order.end(),
+              [&](auto i, auto j) { return box(i).low.x < box(j).low.x; });
     std::vector<std::int32_t> open;
     for (const std::int32_t i : order) {
         std::size_t kept = 0;
@@ -56,15 +57,16 @@ Piece part_of(const Piece& whole, const Cut& from, const Cut& to) {
 
 }  // namespace
 
-Boundary::Boundary(const Scene& scene, std::size_t max_pieces, bool open_rings) : open_rings_(open_rings) {
+Boundary::Boundary(const Scene& scene, std::size_t max_pieces, bool open_rings)
+    : open_rings_(open_rings) {
     const ViewRect view = scene.canvas.view_or_default();
     const double margin = scene.canvas.margin;
     domain_.add({view.x - margin, view.y - margin});
     domain_.add({view.x + view.w + margin, view.y + view.h + margin});
     // A fifty-billionth of the domain, yet well above the rounding of coordinates far from zero.
     const Point size = domain_.high - domain_.low;
-    const double far = std::max({std::abs(domain_.low.x), std::abs(domain_.low.y), std::abs(domain_.high.x),
-                                 std::abs(domain_.high.y)});
+    const double far = std::max({std::abs(domain_.low.x), std::abs(domain_.low.y),
+                                 std::abs(domain_.high.x), std::abs(domain_.high.y)});
     tolerance_ = std::max(2e-11 * std::max(size.x, size.y), 2e-14 * far);
 
     Outlines outlines = outlines_of(scene, max_pieces);
@@ -77,7 +79,8 @@ Boundary::Boundary(const Scene& scene, std::size_t max_pieces, bool open_rings) 
 }
 
 void Boundary::index_bodies() {
-    grid_ = domain_.grown(0.01 * std::max(domain_.high.x - domain_.low.x, domain_.high.y - domain_.low.y));
+    grid_ = domain_.grown(0.01 *
+                          std::max(domain_.high.x - domain_.low.x, domain_.high.y - domain_.low.y));
     const int side = std::clamp(int(std::sqrt(double(bodies_.size()) * 4)), 1, 256);
     cells_x_ = cells_y_ = side;
     cells_.assign(std::size_t(side) * std::size_t(side), {});
@@ -88,9 +91,12 @@ void Boundary::index_bodies() {
         const auto cell = [&](double at, double low, double k) {
             return int(std::clamp((at - low) * k, 0.0, double(side - 1)));
         };
-        for (int y = cell(box.low.y, grid_.low.y, scale.y); y <= cell(box.high.y, grid_.low.y, scale.y); ++y) {
-            for (int x = cell(box.low.x, grid_.low.x, scale.x); x <= cell(box.high.x, grid_.low.x, scale.x); ++x) {
-                cells_[std::size_t(y) * std::size_t(side) + std::size_t(x)].push_back(std::int32_t(i));
+        for (int y = cell(box.low.y, grid_.low.y, scale.y);
+             y <= cell(box.high.y, grid_.low.y, scale.y); ++y) {
+            for (int x = cell(box.low.x, grid_.low.x, scale.x);
+                 x <= cell(box.high.x, grid_.low.x, scale.x); ++x) {
+                cells_[std::size_t(y) * std::size_t(side) + std::size_t(x)].push_back(
+                    std::int32_t(i));
             }
         }
     }
@@ -99,7 +105,8 @@ void Boundary::index_bodies() {
 int Boundary::topmost(Point p) const {
     const Point q = (p - grid_.low) / (grid_.high - grid_.low) * Point(cells_x_, cells_y_);
     if (!(q.x >= 0 && q.y >= 0 && q.x < cells_x_ && q.y < cells_y_)) return -1;
-    for (const std::int32_t i : cells_[std::size_t(q.y) * std::size_t(cells_x_) + std::size_t(q.x)]) {
+    for (const std::int32_t i :
+         cells_[std::size_t(q.y) * std::size_t(cells_x_) + std::size_t(q.x)]) {
         if (bodies_[std::size_t(i)].contains(p)) return i;
     }
     return -1;
@@ -111,8 +118,9 @@ void Boundary::split_and_keep(const std::vector<Piece>& raw) {
     std::vector<std::vector<Cut>> cuts(count);
     std::vector<Meeting> meetings;
     const Box& d = domain_;
-    const Piece border[4] = {straight_piece(d.low, {d.high.x, d.low.y}), straight_piece({d.high.x, d.low.y}, d.high),
-                             straight_piece(d.high, {d.low.x, d.high.y}), straight_piece({d.low.x, d.high.y}, d.low)};
+    const Piece border[4] = {
+        straight_piece(d.low, {d.high.x, d.low.y}), straight_piece({d.high.x, d.low.y}, d.high),
+        straight_piece(d.high, {d.low.x, d.high.y}), straight_piece({d.low.x, d.high.y}, d.low)};
     for (std::size_t i = 0; i < count; ++i) {
         boxes[i] = raw[i].box().grown(2 * tolerance_);
         for (const Piece& side : border) {
@@ -124,7 +132,9 @@ void Boundary::split_and_keep(const std::vector<Piece>& raw) {
     }
     for_each_pair(boxes, [&](std::size_t i, std::size_t j) {
         // Pieces of one convex body meet only at their ends; a polygon's edges may cross.
-        if (raw[i].body == raw[j].body && bodies_[std::size_t(raw[i].body)].kind != Body::Kind::polygon) return;
+        if (raw[i].body == raw[j].body &&
+            bodies_[std::size_t(raw[i].body)].kind != Body::Kind::polygon)
+            return;
         meetings.clear();
         find_meetings(raw[i], raw[j], tolerance_, meetings);
         for (const Meeting& m : meetings) {
@@ -154,12 +164,14 @@ void Boundary::split_and_keep(const std::vector<Piece>& raw) {
         for (std::size_t k = 0; k + 1 < own.size(); ++k) {
             Cut from = own[k];
             const Cut to = own[k + 1];
-            if (to.t <= from.t || length_squared(to.point - from.point) <= tolerance_ * tolerance_) {
+            if (to.t <= from.t ||
+                length_squared(to.point - from.point) <= tolerance_ * tolerance_) {
                 // One point found twice (or a whole turn between equal points: told by its length).
                 if (!whole.is_arc || to.t - from.t < 1) continue;
             }
             // Arcs of less than half a turn keep the sweep's case distinctions simple.
-            const int parts = whole.is_arc ? std::max(1, int(std::ceil((to.t - from.t) / (0.55 * kPi)))) : 1;
+            const int parts =
+                whole.is_arc ? std::max(1, int(std::ceil((to.t - from.t) / (0.55 * kPi)))) : 1;
             const double step = (to.t - from.t) / parts;
             for (int n = 1; n <= parts; ++n) {
                 Cut next = to;

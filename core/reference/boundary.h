@@ -17,7 +17,9 @@ public:
 
     const Problems& problems() const { return problems_; }
     const std::vector<Piece>& pieces() const { return pieces_; }
-    const Material& material_of(const Piece& piece) const { return materials_[std::size_t(piece.material)]; }
+    const Material& material_of(const Piece& piece) const {
+        return materials_[std::size_t(piece.material)];
+    }
     const std::vector<Material>& materials() const { return materials_; }
     const Box& domain() const { return domain_; }
     // Lengths below this are taken for rounding: points closer than this coincide.

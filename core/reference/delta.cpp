@@ -31,7 +31,9 @@ double spot_factor(const SpotLight& light, Point from_light) {
 }  // namespace
 
 DeltaLights::DeltaLights(const Scene& scene, const Boundary& boundary)
-    : lights_(scene.lights), boundary_(boundary), least_distance_(0.5 * scene.canvas.pixel_size()) {}
+    : lights_(scene.lights),
+      boundary_(boundary),
+      least_distance_(0.5 * scene.canvas.pixel_size()) {}
 
 DeltaLights::Arrival DeltaLights::arrival(const Light& light, Point p) const {
     Arrival made;
@@ -54,7 +56,8 @@ DeltaLights::Arrival DeltaLights::arrival(const Light& light, Point p) const {
     return made;
 }
 
-bool DeltaLights::is_visible(const Arrival& arrival, Point p, Point forward, const std::vector<Interval>& seen) const {
+bool DeltaLights::is_visible(const Arrival& arrival, Point p, Point forward,
+                             const std::vector<Interval>& seen) const {
     if (arrival.at_light) return true;
     const double key = direction_key(forward, arrival.direction);
     auto found = std::lower_bound(seen.begin(), seen.end(), key,
@@ -81,13 +84,15 @@ Colour DeltaLights::irradiance(Point p, Point forward, const std::vector<Interva
     for (const Light& light : lights_) {
         const Arrival way = arrival(light, p);
         const double cosine = way.at_light ? 1 : dot(forward, way.direction);
-        if (cosine <= 0 || way.strength == Colour(0) || !is_visible(way, p, forward, seen)) continue;
+        if (cosine <= 0 || way.strength == Colour(0) || !is_visible(way, p, forward, seen))
+            continue;
         sum += way.strength * cosine;
     }
     return sum;
 }
 
-std::uint64_t DeltaLights::lit_set(Point p, Point forward, const std::vector<Interval>& seen) const {
+std::uint64_t DeltaLights::lit_set(Point p, Point forward,
+                                   const std::vector<Interval>& seen) const {
     std::uint64_t set = 14695981039346656037ull;  // FNV-1a over one bit a light
     for (const Light& light : lights_) {
         const Arrival way = arrival(light, p);

@@ -26,11 +26,12 @@ private:
     struct Arrival {
         Point direction{0};  // towards the light, a unit vector (any, where `at_light`)
         bool at_light = false;
-        Colour strength{0};  // irradiance across the beam, shadows left out
-        double distance = 0; // infinite for directional lights
+        Colour strength{0};   // irradiance across the beam, shadows left out
+        double distance = 0;  // infinite for directional lights
     };
     Arrival arrival(const Light& light, Point p) const;
-    bool is_visible(const Arrival& arrival, Point p, Point forward, const std::vector<Interval>& seen) const;
+    bool is_visible(const Arrival& arrival, Point p, Point forward,
+                    const std::vector<Interval>& seen) const;
 
     const std::vector<Light>& lights_;
     const Boundary& boundary_;

@@ -37,7 +37,8 @@ double distance_to_carrier(const Piece& piece, Point p) {
 }
 
 // Ends of `other` that lie on `piece`.
-void find_ends(const Piece& piece, const Piece& other, double tolerance, bool swapped, std::vector<Meeting>& out) {
+void find_ends(const Piece& piece, const Piece& other, double tolerance, bool swapped,
+               std::vector<Meeting>& out) {
     if (other.is_full) return;
     for (const bool last : {false, true}) {
         const Point p = last ? other.b : other.a;
@@ -57,10 +58,12 @@ void cross_straight(const Piece& first, const Piece& second, std::vector<Meeting
     const double f = cross(second.a - first.a, e) / determinant;
     const double g = cross(second.a - first.a, d) / determinant;
     if (f < 0 || f > 1 || g < 0 || g > 1) return;
-    out.push_back({first.t0 + (first.t1 - first.t0) * f, second.t0 + (second.t1 - second.t0) * g, first.a + d * f});
+    out.push_back({first.t0 + (first.t1 - first.t0) * f, second.t0 + (second.t1 - second.t0) * g,
+                   first.a + d * f});
 }
 
-void cross_straight_arc(const Piece& line, const Piece& arc, bool swapped, std::vector<Meeting>& out) {
+void cross_straight_arc(const Piece& line, const Piece& arc, bool swapped,
+                        std::vector<Meeting>& out) {
     const Point d = line.b - line.a;
     const Point q = arc.to_frame(line.a);
     const Point w = arc.vector_to_frame(d);
@@ -94,7 +97,8 @@ void cross_arcs(const Piece& first, const Piece& second, std::vector<Meeting>& o
     f.c2 = 0.5 * (uu - vv);
     f.s2 = dot(u, v);
     const double size = 1 + length_squared(c) + uu + vv;
-    const double largest = std::max({std::abs(f.c0), std::abs(f.c1), std::abs(f.s1), std::abs(f.c2), std::abs(f.s2)});
+    const double largest =
+        std::max({std::abs(f.c0), std::abs(f.c1), std::abs(f.s1), std::abs(f.c2), std::abs(f.s2)});
     if (largest <= 1e-12 * size) return;  // the same ellipse: the ends decide
     for (double t : f.roots()) {
         const double middle = 0.5 * (first.t0 + first.t1);
@@ -151,7 +155,8 @@ std::vector<double> TrigPolynomial::roots() const {
         const double slope_after = slope(high);
         knots.push_back(low);
         if ((slope_before > 0) != (slope_after > 0)) {
-            knots.push_back(bracketed_root([&](double t) { return slope(t); }, low, high, slope_before, slope_after));
+            knots.push_back(bracketed_root([&](double t) { return slope(t); }, low, high,
+                                           slope_before, slope_after));
         }
         slope_before = slope_after;
     }
@@ -160,22 +165,29 @@ std::vector<double> TrigPolynomial::roots() const {
     double before = value(0);
     for (std::size_t i = 1; i < knots.size(); ++i) {
         const double after = value(knots[i]);
-        if (before == 0) found.push_back(knots[i - 1]);
+        if (before == 0)
+            found.push_back(knots[i - 1]);
         else if (after != 0 && (before > 0) != (after > 0)) {
-            found.push_back(bracketed_root([&](double t) { return value(t); }, knots[i - 1], knots[i], before, after));
+            found.push_back(bracketed_root([&](double t) { return value(t); }, knots[i - 1],
+                                           knots[i], before, after));
         }
         before = after;
     }
     return found;
 }
 
-void find_meetings(const Piece& first, const Piece& second, double tolerance, std::vector<Meeting>& out) {
+void find_meetings(const Piece& first, const Piece& second, double tolerance,
+                   std::vector<Meeting>& out) {
     find_ends(first, second, tolerance, false, out);
     find_ends(second, first, tolerance, true, out);
-    if (!first.is_arc && !second.is_arc) cross_straight(first, second, out);
-    else if (!first.is_arc) cross_straight_arc(first, second, false, out);
-    else if (!second.is_arc) cross_straight_arc(second, first, true, out);
-    else cross_arcs(first, second, out);
+    if (!first.is_arc && !second.is_arc)
+        cross_straight(first, second, out);
+    else if (!first.is_arc)
+        cross_straight_arc(first, second, false, out);
+    else if (!second.is_arc)
+        cross_straight_arc(second, first, true, out);
+    else
+        cross_arcs(first, second, out);
 }
 
 }  // namespace penumbra::reference

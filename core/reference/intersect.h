@@ -17,7 +17,8 @@ struct Meeting {
 
 // Appends every meeting of the two pieces: proper crossings, and ends of one that lie within
 // `tolerance` of the other (so pieces that touch or coincide are split where the other one ends).
-void find_meetings(const Piece& first, const Piece& second, double tolerance, std::vector<Meeting>& out);
+void find_meetings(const Piece& first, const Piece& second, double tolerance,
+                   std::vector<Meeting>& out);
 
 // Roots in [0, 2 pi) of  c0 + c1 cos t + s1 sin t + c2 cos 2t + s2 sin 2t  where it changes sign.
 struct TrigPolynomial {

@@ -60,8 +60,9 @@ void add_rect(Outlines& out, Body body, const Rect& rect) {
     body.half_size = rect.size * 0.5 - Point(r);
     const Point h = body.half_size;
     // The centres of the corners' circles, in the order in which the outline passes them.
-    const Point inner[4] = {rect.center - along * h.x - across * h.y, rect.center + along * h.x - across * h.y,
-                            rect.center + along * h.x + across * h.y, rect.center - along * h.x + across * h.y};
+    const Point inner[4] = {
+        rect.center - along * h.x - across * h.y, rect.center + along * h.x - across * h.y,
+        rect.center + along * h.x + across * h.y, rect.center - along * h.x + across * h.y};
     const Point outward[4] = {-across, along, across, -along};  // of the side after corner i
     for (const Point& corner : inner) {
         body.box.add(corner - Point(r * (std::abs(along.x) + std::abs(along.y))));
@@ -138,7 +139,9 @@ struct Adder {
         made.material = add_material(out, shape);
         return made;
     }
-    void operator()(const Circle& c) const { add_ellipse(out, body(), c.center, {c.radius, 0}, {0, c.radius}); }
+    void operator()(const Circle& c) const {
+        add_ellipse(out, body(), c.center, {c.radius, 0}, {0, c.radius});
+    }
     void operator()(const Ellipse& e) const {
         const Point along = direction_of(e.rotation_deg);
         add_ellipse(out, body(), e.center, along * e.radii.x, Point(-along.y, along.x) * e.radii.y);
@@ -149,7 +152,8 @@ struct Adder {
         const Body made = body();
         const std::size_t n = p.points.size();
         if (n == 1) add_capsule(out, made, p.points[0], p.points[0], p.width);
-        for (std::size_t i = 0; i + 1 < n; ++i) add_capsule(out, made, p.points[i], p.points[i + 1], p.width);
+        for (std::size_t i = 0; i + 1 < n; ++i)
+            add_capsule(out, made, p.points[i], p.points[i + 1], p.width);
         if (p.closed && n > 2) add_capsule(out, made, p.points[n - 1], p.points[0], p.width);
     }
     void operator()(const Polygon& p) const { add_polygon(out, body(), p.points); }
@@ -163,7 +167,8 @@ bool polygon_contains(const std::vector<Point>& points, Point p) {
         const Point b = points[j];
         if ((a.y > p.y) == (b.y > p.y)) {
             // The outline belongs to the shape: a level edge or a vertex under the point counts.
-            if (a.y == p.y && b.y == p.y && p.x >= std::min(a.x, b.x) && p.x <= std::max(a.x, b.x)) return true;
+            if (a.y == p.y && b.y == p.y && p.x >= std::min(a.x, b.x) && p.x <= std::max(a.x, b.x))
+                return true;
             if (p == a) return true;
             continue;
         }
@@ -254,7 +259,8 @@ bool Body::contains(Point p) const {
         }
         case Kind::rounded_rect: {
             const Point d = p - center;
-            const Point q{std::abs(dot(d, axis)) - half_size.x, std::abs(cross(axis, d)) - half_size.y};
+            const Point q{std::abs(dot(d, axis)) - half_size.x,
+                          std::abs(cross(axis, d)) - half_size.y};
             const Point beyond{std::max(q.x, 0.0), std::max(q.y, 0.0)};
             return length_squared(beyond) <= radius * radius;
         }
@@ -263,8 +269,10 @@ bool Body::contains(Point p) const {
             const double t = std::clamp(dot(d, axis) / length_squared(axis), 0.0, 1.0);
             return length_squared(d - axis * t) <= radius * radius;
         }
-        case Kind::polygon: return polygon_contains(points, p);
-        case Kind::bitmap: return material_at(p) >= 0;
+        case Kind::polygon:
+            return polygon_contains(points, p);
+        case Kind::bitmap:
+            return material_at(p) >= 0;
     }
     return false;
 }
@@ -278,7 +286,9 @@ int Body::material_at(Point p) const {
     for (const double x : {std::ceil(q.x) - 1, std::floor(q.x)}) {
         for (const double y : {std::ceil(q.y) - 1, std::floor(q.y)}) {
             if (x < 0 || y < 0 || x >= texels_x || y >= texels_y) continue;
-            found = std::max(found, int(texel_material[std::size_t(y) * std::size_t(texels_x) + std::size_t(x)]));
+            found = std::max(
+                found,
+                int(texel_material[std::size_t(y) * std::size_t(texels_x) + std::size_t(x)]));
         }
     }
     return found;
@@ -291,7 +301,8 @@ Outlines outlines_of(const Scene& scene, std::size_t max_pieces) {
         std::visit(Adder{out, shape, int(i), max_pieces}, shape.geometry);
         if (out.pieces.size() > max_pieces && out.problems.empty()) {
             out.problems.push_back({"/shapes/" + std::to_string(i), "too_many_pieces",
-                                    "The exact solver takes outlines of at most " + std::to_string(max_pieces) +
+                                    "The exact solver takes outlines of at most " +
+                                        std::to_string(max_pieces) +
                                         " pieces in all, and this shape goes beyond."});
         }
     }

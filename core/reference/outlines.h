@@ -61,7 +61,7 @@ struct Piece {
     Point to_frame(Point p) const { return vector_to_frame(p - center); }
     Point vector_to_frame(Point d) const { return {dot(inverse_u, d), dot(inverse_v, d)}; }
     Point at(double t) const;
-    Point tangent(double t) const;  // not normalised
+    Point tangent(double t) const;       // not normalised
     double parameter_of(Point p) const;  // of a point on the piece's line or ellipse
     Box box() const;
 };
@@ -74,14 +74,14 @@ struct Body {
     enum class Kind { ellipse, rounded_rect, capsule, polygon, bitmap };
 
     Kind kind = Kind::ellipse;
-    int shape = 0;             // index in the scene's list: the later lies on top
-    int material = 0;          // bitmaps: see `texel_material`
+    int shape = 0;     // index in the scene's list: the later lies on top
+    int material = 0;  // bitmaps: see `texel_material`
     Box box;
-    Point center{0};           // capsule: one end; bitmap: top left corner
-    Point axis{1, 0};          // rect: unit direction of its width; capsule: to the other end
+    Point center{0};   // capsule: one end; bitmap: top left corner
+    Point axis{1, 0};  // rect: unit direction of its width; capsule: to the other end
     Point inverse_u{0}, inverse_v{0};  // ellipse
-    Point half_size{0};        // rect: without the corner's rounding; bitmap: size of a texel
-    double radius = 0;         // capsule, rect's corner
+    Point half_size{0};         // rect: without the corner's rounding; bitmap: size of a texel
+    double radius = 0;          // capsule, rect's corner
     std::vector<Point> points;  // polygon
     int texels_x = 0, texels_y = 0;
     std::vector<std::int32_t> texel_material;  // bitmap: -1 where it is not solid

@@ -14,6 +14,7 @@ constexpr double kPi = std::numbers::pi;
 // Elements at a piece's ends start at this share of the full length and grow by this factor: a
 // geometric mesh resolves the bend of radiance in a corner (Babuska's h-version grading).
 constexpr double kEndShare = 1.0 / 64;
+constexpr double kShortEndShare = 1.0 / 8;  // on pieces shorter than eight elements
 constexpr double kGrowth = 1.5;
 // Shadow edges of delta lights are pinned down to this share of an element.
 constexpr double kEdgeShare = 1.0 / 4096;
@@ -30,7 +31,8 @@ double arc_length(const Piece& piece, double t0, double t1) {
     double sum = 0;
     for (int i = 0; i < 3; ++i) {
         for (const double sign : {-1.0, 1.0}) {
-            const double speed = std::sqrt(length_squared(piece.tangent(middle + sign * half * kNode[i])));
+            const double speed =
+                std::sqrt(length_squared(piece.tangent(middle + sign * half * kNode[i])));
             sum += (i == 0 ? 0.5 : 1.0) * kWeight[i] * speed;
         }
     }
@@ -38,6 +40,17 @@ double arc_length(const Piece& piece, double t0, double t1) {
 }
 
 Point unit(Point d) { return d / std::sqrt(length_squared(d)); }
+
+// The angle from `from` to `to`, for the many thin elements of a picture without a call of atan2:
+// its series' first term left out is below 1e-17 of it.
+double angle_between(Point from, Point to) {
+    const double ratio = cross(from, to) / dot(from, to);
+    if (!(ratio >= 0 && ratio < 0.02) || dot(from, to) <= 0) {
+        return std::max(std::atan2(cross(from, to), dot(from, to)), 0.0);
+    }
+    const double square = ratio * ratio;
+    return ratio * (1 - square * (1.0 / 3 - square * (1.0 / 5 - square * (1.0 / 7 - square / 9))));
+}
 
 double minmod(double a, double b) {
     if (a * b <= 0) return 0;
@@ -70,7 +83,8 @@ double mean_offset(Point from, Point to, Point middle, Point tangent) {
 
 }  // namespace
 
-Elements::Elements(const Boundary& boundary, const DeltaLights& lights, double length) : boundary_(boundary) {
+Elements::Elements(const Boundary& boundary, const DeltaLights& lights, double length)
+    : boundary_(boundary) {
     Sweep sweep(boundary);
     first_.push_back(0);
     for (std::size_t i = 0; i < boundary.pieces().size(); ++i) {
@@ -81,15 +95,16 @@ Elements::Elements(const Boundary& boundary, const DeltaLights& lights, double l
     }
 }
 
-std::vector<double> Elements::first_knots(std::int32_t index, const DeltaLights& lights, double length,
-                                          Sweep& sweep) const {
+std::vector<double> Elements::first_knots(std::int32_t index, const DeltaLights& lights,
+                                          double length, Sweep& sweep) const {
     const Piece& piece = boundary_.pieces()[std::size_t(index)];
     const double whole = arc_length(piece, piece.t0, piece.t1);
     const double turns = piece.is_arc ? (piece.t1 - piece.t0) / kLargestTurn : 0.0;
-    const double full = std::min({length, whole / kFewestElements, turns > 0 ? whole / turns : length});
+    const double full =
+        std::min({length, whole / kFewestElements, turns > 0 ? whole / turns : length});
     // Half the piece from its end, growing; mirrored for the other half.
     std::vector<double> half;
-    double place = 0, step = std::max(full * kEndShare, length * kEndShare * 0.25);
+    double place = 0, step = full * (whole < 8 * length ? kShortEndShare : kEndShare);
     while (place < 0.5 * whole) {
         half.push_back(place);
         place += std::min(step, full);
@@ -100,7 +115,8 @@ std::vector<double> Elements::first_knots(std::int32_t index, const DeltaLights&
     std::vector<double> knots;
     for (const double at : half) knots.push_back(parameter(at * stretch));
     knots.push_back(parameter(0.5));
-    for (std::size_t i = half.size(); i-- > 0;) knots.push_back(i == 0 ? piece.t1 : parameter(1 - half[i] * stretch));
+    for (std::size_t i = half.size(); i-- > 0;)
+        knots.push_back(i == 0 ? piece.t1 : parameter(1 - half[i] * stretch));
     if (lights.empty()) return knots;
 
     const auto lit_set = [&](double t) {
@@ -124,8 +140,10 @@ std::vector<double> Elements::first_knots(std::int32_t index, const DeltaLights&
     // The ends themselves touch other pieces: ask a little inside.
     const double inset = 1e-3 * (knots[1] - knots[0]);
     std::vector<std::uint64_t> sets;
-    for (const double t : knots) sets.push_back(lit_set(std::clamp(t, piece.t0 + inset, piece.t1 - inset)));
-    for (std::size_t i = 0; i + 1 < knots.size(); ++i) refine(knots[i], knots[i + 1], sets[i], sets[i + 1]);
+    for (const double t : knots)
+        sets.push_back(lit_set(std::clamp(t, piece.t0 + inset, piece.t1 - inset)));
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i)
+        refine(knots[i], knots[i + 1], sets[i], sets[i + 1]);
     refined.push_back(knots.back());
     return refined;
 }
@@ -156,7 +174,8 @@ void Elements::append(std::int32_t index, const std::vector<double>& knots) {
 bool Elements::refine(double share, double least_size) {
     double reflected = 0, length = 0;
     for (const Element& e : elements_) {
-        const Colour own = e.radiance - boundary_.material_of(boundary_.pieces()[std::size_t(e.piece)]).emission;
+        const Colour own =
+            e.radiance - boundary_.material_of(boundary_.pieces()[std::size_t(e.piece)]).emission;
         reflected += e.size * std::max({own.r, own.g, own.b});
         length += e.size;
     }
@@ -202,7 +221,8 @@ bool Elements::refine(double share, double least_size) {
 
 void Elements::restart() {
     for (Element& e : elements_) {
-        e.radiance = e.mean = boundary_.material_of(boundary_.pieces()[std::size_t(e.piece)]).emission;
+        e.radiance = e.mean =
+            boundary_.material_of(boundary_.pieces()[std::size_t(e.piece)]).emission;
         e.slope = Colour(0);
     }
 }
@@ -210,8 +230,11 @@ void Elements::restart() {
 void Elements::reconstruct() {
     for (std::size_t i = 0; i < elements_.size(); ++i) {
         Element& e = elements_[i];
-        const Element* before = i > 0 && elements_[i - 1].piece == e.piece ? &elements_[i - 1] : nullptr;
-        const Element* after = i + 1 < elements_.size() && elements_[i + 1].piece == e.piece ? &elements_[i + 1] : nullptr;
+        const Element* before =
+            i > 0 && elements_[i - 1].piece == e.piece ? &elements_[i - 1] : nullptr;
+        const Element* after = i + 1 < elements_.size() && elements_[i + 1].piece == e.piece
+                                   ? &elements_[i + 1]
+                                   : nullptr;
         e.mean = e.radiance;
         if (!before && !after) continue;
         const double back = before ? e.place - before->place : 0;
@@ -219,14 +242,18 @@ void Elements::reconstruct() {
         for (int c = 0; c < 3; ++c) {
             const double rise_back = before ? (e.radiance[c] - before->radiance[c]) / back : 0;
             const double rise_on = after ? (after->radiance[c] - e.radiance[c]) / on : 0;
-            if (!before) e.slope[c] = rise_on;
-            else if (!after) e.slope[c] = rise_back;
+            if (!before)
+                e.slope[c] = rise_on;
+            else if (!after)
+                e.slope[c] = rise_back;
             else {
                 e.slope[c] = limited(rise_back, rise_on, on / (back + on), back / (back + on));
-                // A parabola's mean is its middle plus a 24th of its bend: fourth order seen from afar.
-                // Next to a jump one of the two differences is small, and so is the correction.
+                // A parabola's mean is its middle plus a 24th of its bend: fourth order seen from
+                // afar. Next to a jump one of the two differences is small, and so is the
+                // correction.
                 const double bend = 2 * (rise_on - rise_back) / (back + on);
-                const double most = 0.5 * std::min(std::abs(rise_back) * back, std::abs(rise_on) * on);
+                const double most =
+                    0.5 * std::min(std::abs(rise_back) * back, std::abs(rise_on) * on);
                 const double more = std::clamp(bend * e.size * e.size / 24, -most, most);
                 e.mean[c] = std::max(e.radiance[c] + more, 0.0);
             }
@@ -265,14 +292,17 @@ Colour Gather::fluence(Point p, const std::vector<Interval>& seen) const {
     Colour sum(0);
     for (const Interval& interval : seen) {
         if (interval.piece < 0) {
-            if (!sky.is_black()) sum += sky.integral(std::atan2(interval.from.y, interval.from.x), angle_of(interval));
+            if (!sky.is_black())
+                sum +=
+                    sky.integral(std::atan2(interval.from.y, interval.from.x), angle_of(interval));
         } else if (elements && elements->has(interval.piece)) {
             elements->walk(interval, p, [&](const Elements::Element& e, Point from, Point to) {
-                const double angle = std::max(std::atan2(cross(from, to), dot(from, to)), 0.0);
+                const double angle = angle_between(from, to);
                 sum += angle * (e.mean + e.slope * mean_offset(from, to, e.middle - p, e.tangent));
             });
         } else {
-            const Material& material = boundary.material_of(boundary.pieces()[std::size_t(interval.piece)]);
+            const Material& material =
+                boundary.material_of(boundary.pieces()[std::size_t(interval.piece)]);
             if (material.emission != Colour(0)) sum += angle_of(interval) * material.emission;
         }
     }
@@ -290,8 +320,12 @@ Colour Gather::irradiance(Point p, Point normal, const std::vector<Interval>& se
     Colour sum(0);
     for (const Interval& interval : seen) {
         // The sweep starts behind the normal, where both ends have the cut's direction.
-        const double start = interval.key_from <= -1 ? -1.0 : interval.key_from >= 1 ? 1.0 : sine(interval.from, 1);
-        const double end = interval.key_to <= -1 ? -1.0 : interval.key_to >= 1 ? 1.0 : sine(interval.to, 1);
+        const double start = interval.key_from <= -1  ? -1.0
+                             : interval.key_from >= 1 ? 1.0
+                                                      : sine(interval.from, 1);
+        const double end = interval.key_to <= -1  ? -1.0
+                           : interval.key_to >= 1 ? 1.0
+                                                  : sine(interval.to, 1);
         if (end <= start) continue;
         if (interval.piece < 0) {
             if (sky.is_black()) continue;
@@ -303,21 +337,24 @@ Colour Gather::irradiance(Point p, Point normal, const std::vector<Interval>& se
         } else if (elements && elements->has(interval.piece)) {
             double before = start;
             elements->walk(interval, p, [&](const Elements::Element& e, Point from, Point to) {
-                const double after = std::clamp(sine(to, std::sqrt(length_squared(to))), before, end);
+                const double after =
+                    std::clamp(sine(to, std::sqrt(length_squared(to))), before, end);
                 const double weight = after - before;
                 before = after;
                 if (weight <= 0) return;
                 sum += weight * (e.mean + e.slope * mean_offset(from, to, e.middle - p, e.tangent));
             });
         } else {
-            sum += (end - start) * boundary.material_of(boundary.pieces()[std::size_t(interval.piece)]).emission;
+            sum += (end - start) *
+                   boundary.material_of(boundary.pieces()[std::size_t(interval.piece)]).emission;
         }
     }
     return sum;
 }
 
-bool reflect(Elements& elements, const Boundary& boundary, const SkyIntegral& sky, const DeltaLights& lights,
-             int bounces, const Refinement& refinement, const Parallel& parallel) {
+bool reflect(Elements& elements, const Boundary& boundary, const SkyIntegral& sky,
+             const DeltaLights& lights, int bounces, const Refinement& refinement,
+             const Parallel& parallel) {
     const Gather gather{boundary, sky, &elements};
     std::vector<Colour> next, from_lights;
     const auto round = [&](bool is_first) {
@@ -327,7 +364,8 @@ bool reflect(Elements& elements, const Boundary& boundary, const SkyIntegral& sk
             const Elements::Element& e = elements.all()[i];
             const auto& seen = sweep.look(e.middle, e.normal, 4 * boundary.tolerance(), true);
             if (is_first) from_lights[i] = lights.irradiance(e.middle, e.normal, seen);
-            const Material& material = boundary.material_of(boundary.pieces()[std::size_t(e.piece)]);
+            const Material& material =
+                boundary.material_of(boundary.pieces()[std::size_t(e.piece)]);
             const Colour arriving = gather.irradiance(e.middle, e.normal, seen) + from_lights[i];
             next[i] = material.emission + 0.5 * material.albedo * arriving;
         });

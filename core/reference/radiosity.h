@@ -21,13 +21,15 @@ public:
     Elements(const Boundary& boundary, const DeltaLights& lights, double length);
 
     std::size_t count() const { return elements_.size(); }
-    bool has(std::int32_t piece) const { return first_[std::size_t(piece)] < first_[std::size_t(piece) + 1]; }
+    bool has(std::int32_t piece) const {
+        return first_[std::size_t(piece)] < first_[std::size_t(piece) + 1];
+    }
 
     struct Element {
         Point middle{0}, normal{0}, tangent{0};
         std::int32_t piece = 0;
-        double place = 0;  // of its middle along the piece, world units
-        double size = 0;   // its length
+        double place = 0;    // of its middle along the piece, world units
+        double size = 0;     // its length
         Colour radiance{0};  // at its middle
         Colour mean{0};      // over its length
         Colour slope{0};     // change of radiance per world unit along `tangent`
@@ -37,8 +39,8 @@ public:
 
     void restart();  // back to emission alone
 
-    // Means and slopes from the radiance of neighbours on the same piece; slopes are limited so that
-    // jumps make no overshoot.
+    // Means and slopes from the radiance of neighbours on the same piece; slopes are limited so
+    // that jumps make no overshoot.
     void reconstruct();
 
     // Halves the elements across which radiance bends by more than `share` of the mean reflected
@@ -51,7 +53,8 @@ public:
     void walk(const Interval& interval, Point p, const Visit& visit) const;
 
 private:
-    std::vector<double> first_knots(std::int32_t index, const DeltaLights& lights, double length, Sweep& sweep) const;
+    std::vector<double> first_knots(std::int32_t index, const DeltaLights& lights, double length,
+                                    Sweep& sweep) const;
     void append(std::int32_t index, const std::vector<double>& knots);
 
     const Boundary& boundary_;
@@ -73,17 +76,19 @@ struct Gather {
     Colour irradiance(Point p, Point normal, const std::vector<Interval>& seen) const;
 };
 
-// What `reflect` does before it solves: at most so many rounds that halve elements, down to this size in
-// world units, where radiance bends by more than this share of its mean.
+// What `reflect` does before it solves: at most so many rounds that halve elements, down to this
+// size in world units, where radiance bends by more than this share of its mean.
 struct Refinement {
     int rounds = 5;
     double least_size = 0;
     double share = 3e-5;
 };
 
-// Runs `bounces` rounds of reflection. `parallel(count, body)` runs body(index, sweep) for each index.
+// Runs `bounces` rounds of reflection. `parallel(count, body)` runs body(index, sweep) for each
+// index.
 using Parallel = std::function<bool(std::size_t, const std::function<void(std::size_t, Sweep&)>&)>;
-bool reflect(Elements& elements, const Boundary& boundary, const SkyIntegral& sky, const DeltaLights& lights,
-             int bounces, const Refinement& refinement, const Parallel& parallel);
+bool reflect(Elements& elements, const Boundary& boundary, const SkyIntegral& sky,
+             const DeltaLights& lights, int bounces, const Refinement& refinement,
+             const Parallel& parallel);
 
 }  // namespace penumbra::reference

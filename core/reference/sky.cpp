@@ -22,7 +22,8 @@ SkyIntegral::SkyIntegral(const Sky& sky) {
     std::vector<SkyStop> stops = sky.gradient;
     if (stops.empty()) stops.push_back({0, sky.radiance});
     for (SkyStop& stop : stops) {
-        if (stop.angle_deg < 0 || stop.angle_deg > 360) stop.angle_deg -= 360 * std::floor(stop.angle_deg / 360);
+        if (stop.angle_deg < 0 || stop.angle_deg > 360)
+            stop.angle_deg -= 360 * std::floor(stop.angle_deg / 360);
     }
     std::stable_sort(stops.begin(), stops.end(),
                      [](const SkyStop& a, const SkyStop& b) { return a.angle_deg < b.angle_deg; });
@@ -37,8 +38,8 @@ SkyIntegral::SkyIntegral(const Sky& sky) {
     const Colour at_zero = gap > 0 ? a + (b - a) * ((kTurn - last) / gap) : b;
     add(0, first, at_zero, b);
     for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
-        add(stops[i].angle_deg * (kTurn / 360), stops[i + 1].angle_deg * (kTurn / 360), stops[i].radiance,
-            stops[i + 1].radiance);
+        add(stops[i].angle_deg * (kTurn / 360), stops[i + 1].angle_deg * (kTurn / 360),
+            stops[i].radiance, stops[i + 1].radiance);
     }
     add(last, kTurn, a, at_zero);
     for (Piece& piece : pieces_) {
@@ -50,8 +51,9 @@ SkyIntegral::SkyIntegral(const Sky& sky) {
 }
 
 const SkyIntegral::Piece& SkyIntegral::piece_at(double angle) const {
-    const auto after = std::upper_bound(pieces_.begin(), pieces_.end(), angle,
-                                        [](double t, const Piece& piece) { return t < piece.from; });
+    const auto after =
+        std::upper_bound(pieces_.begin(), pieces_.end(), angle,
+                         [](double t, const Piece& piece) { return t < piece.from; });
     return after == pieces_.begin() ? pieces_.front() : *(after - 1);
 }
 
@@ -73,7 +75,8 @@ Colour SkyIntegral::integral(double angle, double extent) const {
     if (to <= kTurn) {
         // Within one piece without cancellation, which is the usual case.
         const Piece& piece = piece_at(from);
-        if (to <= piece.to) return extent * (piece.start + piece.slope * (from - piece.from + 0.5 * extent));
+        if (to <= piece.to)
+            return extent * (piece.start + piece.slope * (from - piece.from + 0.5 * extent));
         return integral_from_zero(to) - integral_from_zero(from);
     }
     return total_ - integral_from_zero(from) + integral_from_zero(to - kTurn);
@@ -91,7 +94,8 @@ Colour SkyIntegral::cosine_integral(double angle, double extent, double normal_a
             // (start + slope t) cos has the integral (start + slope t) sin + slope cos.
             const auto primitive = [&](double t) {
                 const Colour value = piece.start + piece.slope * (t - piece.from - turn);
-                return value * std::sin(t - normal_angle) + piece.slope * std::cos(t - normal_angle);
+                return value * std::sin(t - normal_angle) +
+                       piece.slope * std::cos(t - normal_angle);
             };
             sum += primitive(high) - primitive(low);
         }

@@ -23,7 +23,7 @@ private:
     struct Piece {
         double from, to;  // radians, within [0, 2 pi], from < to
         Colour start, slope;
-        Colour before;    // integral over all earlier pieces
+        Colour before;  // integral over all earlier pieces
     };
     Colour integral_from_zero(double angle) const;
     const Piece& piece_at(double angle) const;

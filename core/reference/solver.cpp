@@ -29,7 +29,8 @@ struct Share {
     double before = 0, of_step = 1;
 };
 
-// Runs body(0) ... body(count - 1) on several threads, each with its own Sweep. False when cancelled.
+// Runs body(0) ... body(count - 1) on several threads, each with its own Sweep. False when
+// cancelled.
 bool run_parallel(const Sweep& fresh, std::size_t count, const SolveOptions& options, Share share,
                   const std::function<void(std::size_t, Sweep&)>& body) {
     const unsigned processors = std::max(1u, std::thread::hardware_concurrency());
@@ -79,7 +80,8 @@ std::vector<char> shining_pieces(const Boundary& boundary, bool reflecting) {
     std::vector<char> shining;
     for (const Piece& piece : boundary.pieces()) {
         const Material& material = boundary.material_of(piece);
-        shining.push_back(material.emission != Colour(0) || (reflecting && material.albedo != Colour(0)));
+        shining.push_back(material.emission != Colour(0) ||
+                          (reflecting && material.albedo != Colour(0)));
     }
     return shining;
 }
@@ -107,35 +109,39 @@ struct ExactSolver::State {
           lights(scene, boundary),
           shining(shining_pieces(boundary, false)),
           sweep(fresh_sweep()) {
-        is_black = needs_only_shining() && std::find(shining.begin(), shining.end(), 1) == shining.end();
+        is_black =
+            needs_only_shining() && std::find(shining.begin(), shining.end(), 1) == shining.end();
         if (!boundary.problems().empty() || scene.render.bounces <= 0 || is_black) return;
         shining = shining_pieces(boundary, true);
         elements.emplace(boundary, lights, options.element_length_px * scene.canvas.pixel_size());
         reflect_all();
     }
 
-    // The sky and delta lights ask what every direction meets; emitters only where they can be seen.
+    // The sky and delta lights ask what every direction meets; emitters only where they can be
+    // seen.
     bool needs_only_shining() const { return sky.is_black() && lights.empty(); }
     Sweep fresh_sweep() const { return Sweep(boundary, needs_only_shining() ? &shining : nullptr); }
 
     void reflect_all() {
-        // Progress: gathers and pixels cost about the same. Refinement runs as many rounds as it needs
-        // and grows the count of elements, so its part is a guess that never runs backwards.
+        // Progress: gathers and pixels cost about the same. Refinement runs as many rounds as it
+        // needs and grows the count of elements, so its part is a guess that never runs backwards.
         const double stride = std::max(options.stride, 1);
         const double pixels = double(scene.canvas.width) * scene.canvas.height / (stride * stride);
         const int bounces = scene.render.bounces;
-        const Refinement refinement{5, options.element_length_px * scene.canvas.pixel_size() / 32, 3e-5};
+        const Refinement refinement{5, options.element_length_px * scene.canvas.pixel_size() / 32,
+                                    3e-5};
         const double rounds = bounces + refinement.rounds;
         const double gathers = 1.5 * double(elements->count()) * rounds;
         const double part = gathers / std::max(pixels + gathers, 1.0);
         pixels_share = {part, 1 - part};
         int round = 0;
-        cancelled = !reflect(*elements, boundary, sky, lights, bounces, refinement,
-                             [&](std::size_t count, const std::function<void(std::size_t, Sweep&)>& body) {
-                                 const Share share{part * round / rounds, part / rounds};
-                                 ++round;
-                                 return run_parallel(fresh_sweep(), count, options, share, body);
-                             });
+        cancelled =
+            !reflect(*elements, boundary, sky, lights, bounces, refinement,
+                     [&](std::size_t count, const std::function<void(std::size_t, Sweep&)>& body) {
+                         const Share share{part * round / rounds, part / rounds};
+                         ++round;
+                         return run_parallel(fresh_sweep(), count, options, share, body);
+                     });
     }
 
     Gather gather() const { return {boundary, sky, elements ? &*elements : nullptr}; }
@@ -182,7 +188,9 @@ Colour ExactSolver::value(Point p) {
 
 Solution solve(const Scene& scene, const SolveOptions& options) {
     const auto start = Clock::now();
-    const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+    const auto elapsed = [&] {
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    };
     Solution solution;
     const ExactSolver solver(scene, options);
     const ExactSolver::State& state = *solver.state_;
@@ -195,7 +203,8 @@ Solution solve(const Scene& scene, const SolveOptions& options) {
         return solution;
     }
     const Canvas& canvas = scene.canvas;
-    solution.image = ImageF(canvas.width, canvas.height, 3, std::numeric_limits<float>::quiet_NaN());
+    solution.image =
+        ImageF(canvas.width, canvas.height, 3, std::numeric_limits<float>::quiet_NaN());
     const Region region = options.region.value_or(Region{0, 0, canvas.width, canvas.height});
     const int stride = std::max(options.stride, 1);
     const auto solved = [&](int from, int to, int limit) {
@@ -209,21 +218,23 @@ Solution solve(const Scene& scene, const SolveOptions& options) {
     const std::vector<int> rows = solved(region.y0, region.y1, canvas.height);
     const ViewRect view = canvas.view_or_default();
     std::atomic<std::uint64_t> intervals{0};
-    const bool complete = run_parallel(
-        state.fresh_sweep(), rows.size(), options, state.pixels_share, [&](std::size_t row, Sweep& sweep) {
-            const int y = rows[row];
-            std::uint64_t in_row = 0;
-            for (const int x : columns) {
-                const Point p{view.x + (x + 0.5) * view.w / canvas.width, view.y + (y + 0.5) * view.h / canvas.height};
-                if (state.boundary.is_solid(p)) continue;
-                std::size_t in_pixel = 0;
-                const Colour value = state.value(p, sweep, in_pixel);
-                in_row += in_pixel;
-                float* pixel = solution.image.at(x, y);
-                for (int c = 0; c < 3; ++c) pixel[c] = float(value[c]);
-            }
-            intervals += in_row;
-        });
+    const bool complete =
+        run_parallel(state.fresh_sweep(), rows.size(), options, state.pixels_share,
+                     [&](std::size_t row, Sweep& sweep) {
+                         const int y = rows[row];
+                         std::uint64_t in_row = 0;
+                         for (const int x : columns) {
+                             const Point p{view.x + (x + 0.5) * view.w / canvas.width,
+                                           view.y + (y + 0.5) * view.h / canvas.height};
+                             if (state.boundary.is_solid(p)) continue;
+                             std::size_t in_pixel = 0;
+                             const Colour value = state.value(p, sweep, in_pixel);
+                             in_row += in_pixel;
+                             float* pixel = solution.image.at(x, y);
+                             for (int c = 0; c < 3; ++c) pixel[c] = float(value[c]);
+                         }
+                         intervals += in_row;
+                     });
     solution.cancelled = !complete;
     solution.intervals = intervals;
     solution.seconds = elapsed();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The exact solver: what every renderer is measured against. docs/methods/exact.md tells the method,
-// what is exact and what is not.
+// The exact solver: what every renderer is measured against. docs/methods/exact.md tells the
+// method, what is exact and what is not.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,8 @@ double direction_key(Point forward, Point d) {
 double angle_of(const Interval& interval) {
     const double keys = interval.key_to - interval.key_from;
     if (keys >= 4) return 2 * std::numbers::pi;
-    const double angle = std::atan2(cross(interval.from, interval.to), dot(interval.from, interval.to));
+    const double angle =
+        std::atan2(cross(interval.from, interval.to), dot(interval.from, interval.to));
     // More than a half turn has more than half the keys; rounding must not add a whole turn.
     if (keys > 1) return angle < 0 ? angle + 2 * std::numbers::pi : angle;
     return std::max(angle, 0.0);
@@ -51,8 +52,10 @@ bool Sweep::is_nearer(const Span& entering, const Span& active) const {
     Point d = entering.from + end;
     const double size = length_squared(d);
     // Half a turn or so: only a piece that passes within rounding of the point.
-    if (size < 1e-24) d = -turned(entering.from);
-    else d /= std::sqrt(size);
+    if (size < 1e-24)
+        d = -turned(entering.from);
+    else
+        d /= std::sqrt(size);
     const double mine = distance(entering, d);
     const double other = distance(active, d);
     return mine < other || (mine == other && entering.piece < active.piece);
@@ -71,18 +74,21 @@ void Sweep::drop_hidden() {
     if (shining_) {
         for (const Span& span : spans_) {
             if (!(*shining_)[std::size_t(span.piece)]) continue;
-            for (int i = bin(span.key_from); i <= bin(span.key_to); ++i) far_[std::size_t(i)] = std::max(far_[std::size_t(i)], span.farthest);
+            for (int i = bin(span.key_from); i <= bin(span.key_to); ++i)
+                far_[std::size_t(i)] = std::max(far_[std::size_t(i)], span.farthest);
         }
     }
     for (const Span& span : spans_) {
         const int first = int(std::ceil((span.key_from + 2) * kScale));
         const int end = std::min(int((span.key_to + 2) * kScale), kBins);
-        for (int i = first; i < end; ++i) far_[std::size_t(i)] = std::min(far_[std::size_t(i)], span.farthest);
+        for (int i = first; i < end; ++i)
+            far_[std::size_t(i)] = std::min(far_[std::size_t(i)], span.farthest);
     }
     for (std::size_t s = 0; s < spans_.size(); ++s) {
         const Span& span = spans_[s];
         bool matters = false;
-        for (int i = bin(span.key_from); i <= bin(span.key_to) && !matters; ++i) matters = far_[std::size_t(i)] >= span.nearest;
+        for (int i = bin(span.key_from); i <= bin(span.key_to) && !matters; ++i)
+            matters = far_[std::size_t(i)] >= span.nearest;
         if (!matters) continue;
         events_.push_back({span.key_from, std::int32_t(s), 1});
         events_.push_back({span.key_to, std::int32_t(s), 0});
@@ -94,8 +100,8 @@ void Sweep::add_span(Span span, Point from, Point to) {
     const double to_to = std::sqrt(length_squared(to));
     span.from = from / to_from;
     span.to = to / to_to;
-    // An arc bulges towards the observer: no point of it is farther than its ends either. The bounds
-    // give way to rounding.
+    // An arc bulges towards the observer: no point of it is farther than its ends either. The
+    // bounds give way to rounding.
     span.farthest = std::max(to_from, to_to) * (1 + 1e-12);
     span.nearest *= 1 - 1e-12;
     // A span is less than half a turn: with both ends behind, all of it is.
@@ -127,8 +133,10 @@ void Sweep::add_straight(const Piece& piece, std::int32_t index, double height) 
     span.data = e;
     span.piece = index;
     // The foot of the perpendicular, where it lies on the piece, else the nearer end.
-    if (dot(a, e) < 0 && dot(b, e) > 0) span.nearest = -rise / std::sqrt(length_squared(e));
-    else span.nearest = std::sqrt(std::min(length_squared(a), length_squared(b)));
+    if (dot(a, e) < 0 && dot(b, e) > 0)
+        span.nearest = -rise / std::sqrt(length_squared(e));
+    else
+        span.nearest = std::sqrt(std::min(length_squared(a), length_squared(b)));
     add_span(span, b, a);
 }
 
@@ -140,11 +148,13 @@ void Sweep::add_arc(const Piece& piece, std::int32_t index, double height) {
     // To first order the distance to the ellipse is (|q| - 1) times a radius.
     if (height > 0) {
         const double reach = rise / (1 + std::sqrt(norm));
-        if (reach * reach * std::max(length_squared(piece.u), length_squared(piece.v)) <= height * height) return;
+        if (reach * reach * std::max(length_squared(piece.u), length_squared(piece.v)) <=
+            height * height)
+            return;
     }
     // Tangent points in the frame: q / |q| turned by the angle of cosine 1 / |q| either way.
     const double side = std::sqrt(rise);
-    const Point first = (q + Point(q.y, -q.x) * side) / norm;   // of smaller parameter
+    const Point first = (q + Point(q.y, -q.x) * side) / norm;  // of smaller parameter
     const Point last = (q + Point(-q.y, q.x) * side) / norm;
     const auto towards = [&](Point e) { return piece.center + piece.u * e.x + piece.v * e.y - p_; };
     Span span{};
@@ -166,7 +176,8 @@ void Sweep::add_arc(const Piece& piece, std::int32_t index, double height) {
         if (!(cross(piece.e0, q) > 0 && cross(q, piece.e1) > 0)) return;
         add_span(span, towards(last), towards(first));
     } else {
-        add_span(span, front_b ? piece.b - p_ : towards(last), front_a ? piece.a - p_ : towards(first));
+        add_span(span, front_b ? piece.b - p_ : towards(last),
+                 front_a ? piece.a - p_ : towards(first));
     }
 }
 
@@ -178,8 +189,10 @@ const std::vector<Interval>& Sweep::look(Point p, Point forward, double height, 
     events_.clear();
     const std::vector<Piece>& pieces = boundary_.pieces();
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-        if (pieces[i].is_arc) add_arc(pieces[i], std::int32_t(i), height);
-        else add_straight(pieces[i], std::int32_t(i), height);
+        if (pieces[i].is_arc)
+            add_arc(pieces[i], std::int32_t(i), height);
+        else
+            add_straight(pieces[i], std::int32_t(i), height);
     }
     drop_hidden();
     run();
@@ -206,9 +219,9 @@ void Sweep::run() {
     for (const Event& event : events_) {
         const Span& span = spans_[std::size_t(event.span)];
         if (event.is_start) {
-            const auto place = std::partition_point(active_.begin(), active_.end(), [&](std::int32_t other) {
-                return !is_nearer(span, spans_[std::size_t(other)]);
-            });
+            const auto place = std::partition_point(
+                active_.begin(), active_.end(),
+                [&](std::int32_t other) { return !is_nearer(span, spans_[std::size_t(other)]); });
             active_.insert(place, event.span);
         } else {
             active_.erase(std::find(active_.begin(), active_.end(), event.span));

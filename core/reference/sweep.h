@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a point sees: the visible boundary as intervals of direction, by an angular sweep over all
-// critical angles. Exact up to rounding: within an interval the first piece hit is one and the same.
+// critical angles. Exact up to rounding: within an interval the first piece hit is one and the
+// same.
 #pragma once
 
 #include <array>
@@ -31,24 +32,25 @@ double distance_to(const Piece& piece, Point p, Point d);
 // One per thread; it reuses its memory.
 class Sweep {
 public:
-    // `shining` (by piece; null: all, and what lies beyond too) tells which pieces send light. Where
-    // nothing that shines can be seen, intervals may say that the ray leaves the domain instead of
-    // naming a dark piece.
+    // `shining` (by piece; null: all, and what lies beyond too) tells which pieces send light.
+    // Where nothing that shines can be seen, intervals may say that the ray leaves the domain
+    // instead of naming a dark piece.
     explicit Sweep(const Boundary& boundary, const std::vector<char>* shining = nullptr)
         : boundary_(boundary), shining_(shining) {}
 
     // All round `p`, in order of direction_key(forward, .), from behind `forward` and back.
     // `height`: pieces whose line passes `p` closer than this are left out; a point that lies on
     // the boundary passes the boundary's tolerance, so that it does not shadow itself.
-    // Only what lies in the half plane of `forward` matters when `half` is set; the rest may be left out.
+    // Only what lies in the half plane of `forward` matters when `half` is set; the rest may be
+    // left out.
     const std::vector<Interval>& look(Point p, Point forward, double height, bool half);
 
 private:
     struct Span {
         Point from, to;  // unit directions
         double key_from, key_to;
-        double rise;     // straight: cross(a - p, b - a); arc: |p'|^2 - 1 in its frame
-        Point data;      // straight: b - a; arc: p' in its frame
+        double rise;               // straight: cross(a - p, b - a); arc: |p'|^2 - 1 in its frame
+        Point data;                // straight: b - a; arc: p' in its frame
         double nearest, farthest;  // bounds on its distance
         std::int32_t piece;
         bool is_arc;

@@ -19,8 +19,18 @@ Scene box_of_walls(Colour emission, Colour albedo) {
 
 Scene ring_of_polygon(Colour emission, Colour albedo) {
     Scene scene = empty_scene();
-    add(scene, Polygon{{{10, 10}, {90, 15}, {85, 90}, {12, 80}, {10, 10}, {30, 25}, {20, 70}, {50, 55}, {75, 75}, {80, 20},
-                        {30, 25}}},
+    add(scene,
+        Polygon{{{10, 10},
+                 {90, 15},
+                 {85, 90},
+                 {12, 80},
+                 {10, 10},
+                 {30, 25},
+                 {20, 70},
+                 {50, 55},
+                 {75, 75},
+                 {80, 20},
+                 {30, 25}}},
         emission, albedo);
     return scene;
 }
@@ -38,8 +48,10 @@ TEST(Bounces, FurnaceAfterEachBounce) {
                 const Colour found = solver.mean_radiance(p);
                 for (int c = 0; c < 3; ++c) {
                     const double rho = albedo[c];
-                    const double sum = rho == 1 ? bounces + 1 : (1 - std::pow(rho, bounces + 1)) / (1 - rho);
-                    EXPECT_NEAR(found[c], emission[c] * sum, 1e-9 * emission[c] * sum) << bounces << " " << c << " " << ring;
+                    const double sum =
+                        rho == 1 ? bounces + 1 : (1 - std::pow(rho, bounces + 1)) / (1 - rho);
+                    EXPECT_NEAR(found[c], emission[c] * sum, 1e-9 * emission[c] * sum)
+                        << bounces << " " << c << " " << ring;
                 }
             }
         }
@@ -51,7 +63,8 @@ TEST(Bounces, ClosedFurnaceConverges) {
     scene.render.bounces = 64;
     reference::SolveOptions options;
     options.element_length_px = 4;
-    EXPECT_NEAR(reference::ExactSolver(scene, options).mean_radiance({47, 53})[0], 1 / (1 - 0.5), 1e-9);
+    EXPECT_NEAR(reference::ExactSolver(scene, options).mean_radiance({47, 53})[0], 1 / (1 - 0.5),
+                1e-9);
 }
 
 TEST(Bounces, RoundFurnace) {
@@ -72,7 +85,13 @@ TEST(Bounces, AConvexBodyUnderAnEvenSky) {
         scene.sky.radiance = Colour(2);
         add(scene, Ellipse{{50, 50}, {20, 8}, 25}, Colour(0), Colour(rho));
         scene.render.bounces = bounces;
-        const double bare = phi([&] { Scene s = scene; s.render.bounces = 0; return s; }(), {50.5, 80.5});
+        const double bare = phi(
+            [&] {
+                Scene s = scene;
+                s.render.bounces = 0;
+                return s;
+            }(),
+            {50.5, 80.5});
         const double open = bare / 2;
         EXPECT_NEAR(phi(scene, {50.5, 80.5}), 2 * open + 2 * rho * (1 - open), 1e-10);
     }
@@ -93,8 +112,8 @@ TEST(Bounces, ACosineSkyOverALevelFloor) {
 }
 
 TEST(Bounces, ALampAboveAFloor) {
-    // A point light at height h over an endless floor: Lo = rho / 2 I h / (h^2 + x^2), and at height y
-    // above its foot the mean radiance is rho I / (4 (h + y)).
+    // A point light at height h over an endless floor: Lo = rho / 2 I h / (h^2 + x^2), and at
+    // height y above its foot the mean radiance is rho I / (4 (h + y)).
     Scene scene = empty_scene(100, 100, 1500);
     const double rho = 0.7, intensity = 40;
     add(scene, box({50, 1000}, {5000, 1840}), Colour(0), Colour(rho));

@@ -47,9 +47,10 @@ TEST(Direct, SquareFromItsVertices) {
         const double r = rotation * kPi / 180;
         const Point x(std::cos(r), std::sin(r)), y(-x.y, x.x);
         const Point c(50, 50);
-        const std::vector<Point> corners{c + x * 10. + y * 6., c + x * 10. - y * 6., c - x * 10. + y * 6.,
-                                         c - x * 10. - y * 6.};
-        for (const Point p : {Point(20.5, 30.5), Point(50.5, 90.5), Point(85.5, 52.5), Point(66.5, 40.5)}) {
+        const std::vector<Point> corners{c + x * 10. + y * 6., c + x * 10. - y * 6.,
+                                         c - x * 10. + y * 6., c - x * 10. - y * 6.};
+        for (const Point p :
+             {Point(20.5, 30.5), Point(50.5, 90.5), Point(85.5, 52.5), Point(66.5, 40.5)}) {
             EXPECT_NEAR(phi(scene, p), span_of(p, c, corners) / (2 * kPi), kExact) << rotation;
         }
     }
@@ -69,8 +70,10 @@ TEST(Direct, EllipseByItsTangents) {
     const double a = 25, b = 7;
     Scene scene = empty_scene();
     add(scene, Ellipse{{50, 50}, {a, b}, 0}, Colour(1));
-    for (const Point p : {Point(50.5, 80.5), Point(90.5, 55.5), Point(10.5, 10.5), Point(78, 51), Point(52, 58)}) {
-        // Pairs of tangents from (x, y): tan = 2 sqrt(b^2 x^2 + a^2 y^2 - a^2 b^2) / (x^2 + y^2 - a^2 - b^2).
+    for (const Point p :
+         {Point(50.5, 80.5), Point(90.5, 55.5), Point(10.5, 10.5), Point(78, 51), Point(52, 58)}) {
+        // Pairs of tangents from (x, y): tan = 2 sqrt(b^2 x^2 + a^2 y^2 - a^2 b^2) / (x^2 + y^2 -
+        // a^2 - b^2).
         const double x = p.x - 50, y = p.y - 50;
         const double rise = 2 * std::sqrt(b * b * x * x + a * a * y * y - a * a * b * b);
         const double angle = std::atan2(rise, x * x + y * y - a * a - b * b);
@@ -87,7 +90,8 @@ TEST(Direct, DiscBehindDisc) {
         const Point c(40, 50 + shift);
         add(scene, disc(c, 3));
         const double middle = std::atan2(shift, 30), half = std::asin(3 / std::hypot(30, shift));
-        const double hidden = std::max(0.0, std::min(lamp, middle + half) - std::max(-lamp, middle - half));
+        const double hidden =
+            std::max(0.0, std::min(lamp, middle + half) - std::max(-lamp, middle - half));
         EXPECT_NEAR(phi(scene, p), (2 * lamp - hidden) / (2 * kPi), kExact) << shift;
     }
     Scene scene = empty_scene();
@@ -107,8 +111,10 @@ TEST(Direct, OverlappingLampsShareTheirUnion) {
     // Seen from the line of symmetry each shows its own half, in either order.
     for (const bool swapped : {false, true}) {
         Scene scene = empty_scene();
-        add(scene, disc({swapped ? 56.0 : 44.0, 50}, 10), swapped ? Colour(0, 1, 0) : Colour(1, 0, 0));
-        add(scene, disc({swapped ? 44.0 : 56.0, 50}, 10), swapped ? Colour(1, 0, 0) : Colour(0, 1, 0));
+        add(scene, disc({swapped ? 56.0 : 44.0, 50}, 10),
+            swapped ? Colour(0, 1, 0) : Colour(1, 0, 0));
+        add(scene, disc({swapped ? 44.0 : 56.0, 50}, 10),
+            swapped ? Colour(1, 0, 0) : Colour(0, 1, 0));
         const Point p(50, 10);
         const double reach = std::atan2(6, 40) + std::asin(10 / std::hypot(6, 40));
         const Colour found = reference::mean_radiance_at(scene, p);
@@ -151,7 +157,8 @@ TEST(Direct, ShapesThatTouchLeaveNoGap) {
     add(scene, box({50, 75}, {60, 10}));
     add(scene, box({25, 50}, {10, 40}));
     add(scene, box({75, 50}, {10, 40}));
-    for (const Point p : {Point(50, 50), Point(31, 31), Point(60.3, 40.7)}) EXPECT_EQ(phi(scene, p), 0);
+    for (const Point p : {Point(50, 50), Point(31, 31), Point(60.3, 40.7)})
+        EXPECT_EQ(phi(scene, p), 0);
 }
 
 TEST(Direct, SkyFillsWhatIsOpen) {
@@ -188,7 +195,8 @@ TEST(Direct, SkyGradientWithSteps) {
 
 TEST(Direct, GradientThroughASlit) {
     Scene scene = empty_scene();
-    scene.sky.gradient = {{0, Colour(0)}, {360, Colour(360)}};  // its own angle in degrees, a step at 0
+    scene.sky.gradient = {{0, Colour(0)},
+                          {360, Colour(360)}};  // its own angle in degrees, a step at 0
     add(scene, box({50, 50}, {100, 20}));
     // Through the slit between two walls only angles 60 to 120 show.
     scene.shapes.clear();

@@ -19,7 +19,9 @@ ImageF grey(std::vector<float> values) {
     return image;
 }
 
-ErrorFigures figures(const ImageF& a, const ImageF& b) { return std::get<ErrorFigures>(error_figures(a, b)); }
+ErrorFigures figures(const ImageF& a, const ImageF& b) {
+    return std::get<ErrorFigures>(error_figures(a, b));
+}
 
 TEST(ErrorFigures, ByHand) {
     // mean b = 2; differences 1, 0, 2, 1.
@@ -33,7 +35,10 @@ TEST(ErrorFigures, ByHand) {
     EXPECT_NEAR(*f.max_abs, 2, 1e-12);
     EXPECT_NEAR(*f.max, 2 / mean, 1e-12);
     EXPECT_NEAR(*f.bias, (9.0 / 4 - mean) / mean, 1e-12);
-    EXPECT_NEAR(*f.rel, (1 / (1 + 0.05 * mean) + 2 / (3 + 0.05 * mean) + (4 - last) / (last + 0.05 * mean)) / 4, 1e-12);
+    EXPECT_NEAR(
+        *f.rel,
+        (1 / (1 + 0.05 * mean) + 2 / (3 + 0.05 * mean) + (4 - last) / (last + 0.05 * mean)) / 4,
+        1e-12);
     EXPECT_FALSE(f.leak.has_value());
 }
 
@@ -54,7 +59,8 @@ TEST(ErrorFigures, Leak) {
 }
 
 TEST(ErrorFigures, NanInTheTruthIsLeftOutNanInThePictureIsCounted) {
-    const auto f = figures(grey({1, 100, kNan, kNan, std::numeric_limits<float>::infinity()}), grey({1, kNan, 1, kNan, 1}));
+    const auto f = figures(grey({1, 100, kNan, kNan, std::numeric_limits<float>::infinity()}),
+                           grey({1, kNan, 1, kNan, 1}));
     EXPECT_EQ(f.count, 1u);
     EXPECT_EQ(f.nan_only_a, 2u);
     EXPECT_EQ(*f.nrmse, 0);
@@ -83,9 +89,12 @@ TEST(ErrorFigures, EveryChannelIsASample) {
 }
 
 TEST(ErrorFigures, SizesMustAgree) {
-    EXPECT_EQ(std::get<Problem>(error_figures(ImageF(2, 1, 3), ImageF(1, 2, 3))).code, "size_differs");
-    EXPECT_EQ(std::get<Problem>(error_figures(ImageF(2, 1, 1), ImageF(2, 1, 3))).code, "channels_differ");
-    EXPECT_EQ(std::get<Problem>(pixel_figures(Image8(2, 1, 1), Image8(1, 1, 1))).code, "size_differs");
+    EXPECT_EQ(std::get<Problem>(error_figures(ImageF(2, 1, 3), ImageF(1, 2, 3))).code,
+              "size_differs");
+    EXPECT_EQ(std::get<Problem>(error_figures(ImageF(2, 1, 1), ImageF(2, 1, 3))).code,
+              "channels_differ");
+    EXPECT_EQ(std::get<Problem>(pixel_figures(Image8(2, 1, 1), Image8(1, 1, 1))).code,
+              "size_differs");
 }
 
 TEST(PixelFigures, ByHand) {

@@ -23,12 +23,15 @@ Image8 noise(int width, int height, unsigned seed, int amount) {
     Image8 image(width, height, 3);
     std::mt19937 random(seed);
     for (int i = 0; i < width * height * 3; ++i) {
-        image.data[std::size_t(i)] = std::uint8_t(128 + int(random() % unsigned(2 * amount + 1)) - amount);
+        image.data[std::size_t(i)] =
+            std::uint8_t(128 + int(random() % unsigned(2 * amount + 1)) - amount);
     }
     return image;
 }
 
-double flip_of(const Image8& a, const Image8& b, double ppd = 67) { return std::get<Flip>(flip(a, b, {ppd})).mean; }
+double flip_of(const Image8& a, const Image8& b, double ppd = 67) {
+    return std::get<Flip>(flip(a, b, {ppd})).mean;
+}
 
 TEST(Flip, EqualPicturesHaveNone) {
     EXPECT_EQ(flip_of(noise(40, 30, 1, 100), noise(40, 30, 1, 100)), 0);
@@ -42,8 +45,8 @@ TEST(Flip, BlackAgainstWhiteByHand) {
     // green L 87.735, a -86.183, b 83.180; blue L 32.301, a 79.188, b -107.860.
     const double green[3] = {87.7347, 0.877347 * -86.1827, 0.877347 * 83.1793};
     const double blue[3] = {32.2970, 0.322970 * 79.1875, 0.322970 * -107.8602};
-    const double largest =
-        std::pow(std::abs(green[0] - blue[0]) + std::hypot(green[1] - blue[1], green[2] - blue[2]), 0.7);
+    const double largest = std::pow(
+        std::abs(green[0] - blue[0]) + std::hypot(green[1] - blue[1], green[2] - blue[2]), 0.7);
     const double colour = std::pow(100, 0.7);
     const double knee = 0.4 * largest;
     ASSERT_GT(colour, knee);
@@ -63,8 +66,8 @@ TEST(Flip, SmallFlatDifferenceByHand) {
     };
     const double green[3] = {87.7347, 0.877347 * -86.1827, 0.877347 * 83.1793};
     const double blue[3] = {32.2970, 0.322970 * 79.1875, 0.322970 * -107.8602};
-    const double largest =
-        std::pow(std::abs(green[0] - blue[0]) + std::hypot(green[1] - blue[1], green[2] - blue[2]), 0.7);
+    const double largest = std::pow(
+        std::abs(green[0] - blue[0]) + std::hypot(green[1] - blue[1], green[2] - blue[2]), 0.7);
     const double expected = std::pow(lightness(129) - lightness(128), 0.7) * 0.95 / (0.4 * largest);
     EXPECT_NEAR(flip_of(flat(16, 128, 128, 128), flat(16, 129, 129, 129)), expected, 1e-5);
 }
@@ -107,7 +110,8 @@ TEST(Flip, AnEdgeIsSeenMoreThanItsColourAlone) {
     const Flip result = std::get<Flip>(flip(base, line));
     EXPECT_GT(*result.map.at(20, 20), 0.3f);
     EXPECT_LT(*result.map.at(0, 20), 0.05f);
-    for (int x = 0; x <= 20; ++x) EXPECT_NEAR(*result.map.at(x, 20), *result.map.at(40 - x, 20), 1e-5);
+    for (int x = 0; x <= 20; ++x)
+        EXPECT_NEAR(*result.map.at(x, 20), *result.map.at(40 - x, 20), 1e-5);
     for (int y = 0; y < 41; ++y) EXPECT_NEAR(*result.map.at(20, y), *result.map.at(20, 20), 1e-5);
 }
 

@@ -33,9 +33,12 @@ TEST(Outlines, RoundedRectangle) {
         const double r = kPi / 6;
         const Point x(std::cos(r), std::sin(r)), y(-x.y, x.x), c(50, 50);
         const double u = 20 - corner, v = 10 - corner;
-        const std::vector<Point> centers{c + x * u + y * v, c + x * u - y * v, c - x * u + y * v, c - x * u - y * v};
-        for (const Point p : {Point(5.5, 5.5), Point(50.5, 90.5), Point(95.5, 50.5), Point(20.5, 60.5)}) {
-            EXPECT_NEAR(phi(scene, p), span_of_discs(p, c, centers, corner) / (2 * kPi), kExact) << corner;
+        const std::vector<Point> centers{c + x * u + y * v, c + x * u - y * v, c - x * u + y * v,
+                                         c - x * u - y * v};
+        for (const Point p :
+             {Point(5.5, 5.5), Point(50.5, 90.5), Point(95.5, 50.5), Point(20.5, 60.5)}) {
+            EXPECT_NEAR(phi(scene, p), span_of_discs(p, c, centers, corner) / (2 * kPi), kExact)
+                << corner;
         }
     }
 }
@@ -53,7 +56,8 @@ TEST(Outlines, LineIsACapsule) {
     Scene scene = empty_scene();
     add(scene, Line{{30, 40}, {70, 65}, 6}, Colour(1));
     for (const Point p : {Point(50, 90), Point(10, 10), Point(90, 80), Point(20, 50)}) {
-        EXPECT_NEAR(phi(scene, p), span_of_discs(p, {50, 52.5}, {{30, 40}, {70, 65}}, 3) / (2 * kPi), kExact);
+        EXPECT_NEAR(phi(scene, p),
+                    span_of_discs(p, {50, 52.5}, {{30, 40}, {70, 65}}, 3) / (2 * kPi), kExact);
     }
     Scene point = empty_scene();
     add(point, Line{{30, 40}, {30, 40}, 6}, Colour(1));
@@ -78,7 +82,16 @@ TEST(Outlines, PolylineIsOneSolid) {
 
 TEST(Outlines, PolygonWithAHole) {
     // An outer and an inner square joined by a seam that is passed twice.
-    Polygon ring{{{20, 20}, {80, 20}, {80, 80}, {20, 80}, {20, 20}, {40, 40}, {40, 60}, {60, 60}, {60, 40}, {40, 40}}};
+    Polygon ring{{{20, 20},
+                  {80, 20},
+                  {80, 80},
+                  {20, 80},
+                  {20, 20},
+                  {40, 40},
+                  {40, 60},
+                  {60, 60},
+                  {60, 40},
+                  {40, 40}}};
     Scene scene = empty_scene();
     add(scene, ring, Colour(3));
     EXPECT_NEAR(phi(scene, {50, 50}), 3, kExact);
@@ -107,10 +120,12 @@ TEST(Outlines, PolygonThatCrossesItself) {
     Scene tie = empty_scene();
     add(tie, Polygon{{{40, 30}, {60, 70}, {40, 70}, {60, 30}}}, Colour(1));
     EXPECT_NEAR(phi(tie, {50, 90}), 2 * std::atan(10.0 / 20) / (2 * kPi), kExact);
-    EXPECT_NEAR(phi(tie, {80, 50}), span_of({80, 50}, {50, 50}, {{60, 30}, {60, 70}}) / (2 * kPi), kExact);
+    EXPECT_NEAR(phi(tie, {80, 50}), span_of({80, 50}, {50, 50}, {{60, 30}, {60, 70}}) / (2 * kPi),
+                kExact);
 }
 
-std::shared_ptr<Texels> picture(int width, int height, const std::vector<std::array<int, 4>>& texels) {
+std::shared_ptr<Texels> picture(int width, int height,
+                                const std::vector<std::array<int, 4>>& texels) {
     auto made = std::make_shared<Texels>();
     made->width = width;
     made->height = height;
@@ -133,8 +148,14 @@ TEST(Outlines, BitmapOfOneColourIsARectangle) {
 TEST(Outlines, BitmapTexelsHaveTheirOwnColours) {
     // Red left, green right, above a texel that alpha leaves open and one that just counts.
     Scene scene = empty_scene();
-    add(scene, Bitmap{picture(2, 2, {{255, 0, 0, 255}, {0, 188, 0, 255}, {9, 9, 9, 127}, {0, 0, 255, 128}}),
-                      {40, 40}, {20, 20}, 3.0, 0.5, false});
+    add(scene,
+        Bitmap{
+            picture(2, 2, {{255, 0, 0, 255}, {0, 188, 0, 255}, {9, 9, 9, 127}, {0, 0, 255, 128}}),
+            {40, 40},
+            {20, 20},
+            3.0,
+            0.5,
+            false});
     const Point p(50, 10);
     const Colour found = reference::mean_radiance_at(scene, p);
     EXPECT_NEAR(found.r, 3 * std::atan(10.0 / 30) / (2 * kPi), kExact);
@@ -152,7 +173,9 @@ TEST(Outlines, BitmapTexelsHaveTheirOwnColours) {
 
 TEST(Outlines, TexelsThatTouchAtACornerLetNoLightThrough) {
     Scene scene = empty_scene();
-    add(scene, Bitmap{picture(2, 2, {{0, 0, 0, 255}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 255}}), {40, 40}, {20, 20}});
+    add(scene, Bitmap{picture(2, 2, {{0, 0, 0, 255}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 255}}),
+                      {40, 40},
+                      {20, 20}});
     add(scene, disc({70, 30}, 4), Colour(1));
     EXPECT_NEAR(phi(scene, {45, 55}), 0, 1e-15);
 }

@@ -21,7 +21,8 @@ inline Scene empty_scene(int width = 100, int height = 100, double margin = 0) {
     return scene;
 }
 
-inline void add(Scene& scene, const Geometry& geometry, Colour emission = Colour(0), Colour albedo = Colour(0)) {
+inline void add(Scene& scene, const Geometry& geometry, Colour emission = Colour(0),
+                Colour albedo = Colour(0)) {
     scene.shapes.push_back({geometry, emission, albedo});
 }
 

@@ -36,7 +36,8 @@ struct Ray {
 
     void add(double enter, double leave, Point normal) const {
         if (leave >= 0 && enter <= leave) {
-            out.push_back({enter, leave, normal / std::sqrt(dot_of(normal, normal)), shape.emission, shape.albedo});
+            out.push_back({enter, leave, normal / std::sqrt(dot_of(normal, normal)), shape.emission,
+                           shape.albedo});
         }
     }
     // |R^-1 (x - center) / radii| <= 1
@@ -60,7 +61,8 @@ struct Ray {
                 if (std::abs(q[axis]) > half[axis]) return;
                 continue;
             }
-            const double t0 = (-half[axis] - q[axis]) / e[axis], t1 = (half[axis] - q[axis]) / e[axis];
+            const double t0 = (-half[axis] - q[axis]) / e[axis],
+                         t1 = (half[axis] - q[axis]) / e[axis];
             if (std::min(t0, t1) > enter) {
                 enter = std::min(t0, t1);
                 normal = Point(0);
@@ -75,7 +77,8 @@ struct Ray {
         ellipse(b, Point(width / 2), 0);
         const Point along = b - a;
         const double size = std::hypot(along.x, along.y);
-        if (size > 0) slabs(0.5 * (a + b), {size / 2, width / 2}, std::atan2(along.y, along.x) * 180 / kPi);
+        if (size > 0)
+            slabs(0.5 * (a + b), {size / 2, width / 2}, std::atan2(along.y, along.x) * 180 / kPi);
     }
 
     void operator()(const Circle& c) const { ellipse(c.center, Point(c.radius), 0); }
@@ -88,17 +91,20 @@ struct Ray {
         slabs(r.center, half - Point(0, k), r.rotation_deg);
         for (const double x : {-1.0, 1.0}) {
             for (const double y : {-1.0, 1.0}) {
-                ellipse(r.center + rotated(Point(x, y) * (half - Point(k)), r.rotation_deg), Point(k), 0);
+                ellipse(r.center + rotated(Point(x, y) * (half - Point(k)), r.rotation_deg),
+                        Point(k), 0);
             }
         }
     }
     void operator()(const Line& l) const { capsule(l.from, l.to, l.width); }
     void operator()(const Polyline& l) const {
-        for (std::size_t i = 0; i + 1 < l.points.size(); ++i) capsule(l.points[i], l.points[i + 1], l.width);
+        for (std::size_t i = 0; i + 1 < l.points.size(); ++i)
+            capsule(l.points[i], l.points[i + 1], l.width);
         if (l.closed) capsule(l.points.back(), l.points.front(), l.width);
     }
     void operator()(const Polygon& g) const {
-        // All crossings of the whole line, in order: inside between the first and second, and so on.
+        // All crossings of the whole line, in order: inside between the first and second, and so
+        // on.
         std::vector<std::pair<double, Point>> crossings;
         for (std::size_t i = 0; i < g.points.size(); ++i) {
             const Point a = g.points[i] - p, b = g.points[(i + 1) % g.points.size()] - p;
@@ -109,7 +115,8 @@ struct Ray {
             if (dot_of(normal, d) > 0) normal = -normal;
             crossings.emplace_back(dot_of(a + (b - a) * f, d), normal);
         }
-        std::sort(crossings.begin(), crossings.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+        std::sort(crossings.begin(), crossings.end(),
+                  [](const auto& x, const auto& y) { return x.first < y.first; });
         for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
             add(crossings[i].first, crossings[i + 1].first, crossings[i].second);
         }
@@ -187,7 +194,8 @@ Colour Twin::sky(Point d) const {
         if (i + 1 == stops.size()) b.angle_deg += 360;
         const double t = angle < a.angle_deg ? angle + 360 : angle;
         if (t >= a.angle_deg && t < b.angle_deg) {
-            return a.radiance + (b.radiance - a.radiance) * ((t - a.angle_deg) / (b.angle_deg - a.angle_deg));
+            return a.radiance +
+                   (b.radiance - a.radiance) * ((t - a.angle_deg) / (b.angle_deg - a.angle_deg));
         }
     }
     return stops.back().radiance;
@@ -236,33 +244,46 @@ Colour Twin::path(Point p, Point d, int bounces, std::mt19937_64& random) const 
 
 Scene random_scene(unsigned seed, int shapes) {
     std::mt19937_64 random(seed);
-    const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+    const auto between = [&](double a, double b) {
+        return std::uniform_real_distribution<double>(a, b)(random);
+    };
     const auto point = [&] { return Point(between(-10, 110), between(-10, 90)); };
     const auto colour = [&] { return Colour(between(0, 1), between(0, 1), between(0, 1)); };
     Scene scene;
     scene.canvas.width = 100;
     scene.canvas.height = 80;
     scene.canvas.margin = seed % 3 == 0 ? 0 : between(0, 25);
-    if (seed % 2 == 0) scene.sky.gradient = {{20, colour()}, {110, colour()}, {110, colour()}, {290, colour()}};
-    else if (seed % 4 == 1) scene.sky.radiance = colour();
+    if (seed % 2 == 0)
+        scene.sky.gradient = {{20, colour()}, {110, colour()}, {110, colour()}, {290, colour()}};
+    else if (seed % 4 == 1)
+        scene.sky.radiance = colour();
     for (int i = 0; i < shapes; ++i) {
         Shape shape;
         if (between(0, 1) < 0.6) shape.emission = colour() * between(0, 4);
         if (between(0, 1) < 0.7) shape.albedo = colour();
         switch (i % 7) {
-            case 0: shape.geometry = Circle{point(), between(0.5, 14)}; break;
-            case 1: shape.geometry = Ellipse{point(), {between(1, 20), between(1, 8)}, between(-180, 180)}; break;
+            case 0:
+                shape.geometry = Circle{point(), between(0.5, 14)};
+                break;
+            case 1:
+                shape.geometry =
+                    Ellipse{point(), {between(1, 20), between(1, 8)}, between(-180, 180)};
+                break;
             case 2: {
                 Rect rect{point(), {between(2, 30), between(2, 20)}, between(-180, 180), 0};
-                if (i % 2 == 0) rect.corner_radius = between(0, 0.5) * std::min(rect.size.x, rect.size.y);
+                if (i % 2 == 0)
+                    rect.corner_radius = between(0, 0.5) * std::min(rect.size.x, rect.size.y);
                 shape.geometry = rect;
                 break;
             }
-            case 3: shape.geometry = Line{point(), point(), between(0.5, 5)}; break;
+            case 3:
+                shape.geometry = Line{point(), point(), between(0.5, 5)};
+                break;
             case 4: {
                 Polyline line;
                 Point at = point();
-                for (int k = 0; k < 5; ++k) line.points.push_back(at = at + Point(between(-20, 20), between(-20, 20)));
+                for (int k = 0; k < 5; ++k)
+                    line.points.push_back(at = at + Point(between(-20, 20), between(-20, 20)));
                 line.width = between(0.5, 6);
                 line.closed = i % 2 == 0;
                 shape.geometry = line;
@@ -272,7 +293,8 @@ Scene random_scene(unsigned seed, int shapes) {
                 Polygon polygon;
                 const Point at = point();
                 const int count = 3 + int(between(0, 5));
-                for (int k = 0; k < count; ++k) polygon.points.push_back(at + Point(between(-15, 15), between(-15, 15)));
+                for (int k = 0; k < count; ++k)
+                    polygon.points.push_back(at + Point(between(-15, 15), between(-15, 15)));
                 shape.geometry = polygon;
                 break;
             }
@@ -281,10 +303,12 @@ Scene random_scene(unsigned seed, int shapes) {
                 texels->width = 6;
                 texels->height = 4;
                 for (int k = 0; k < 6 * 4; ++k) {
-                    for (int c = 0; c < 3; ++c) texels->rgba.push_back(std::uint8_t(between(0, 256)));
+                    for (int c = 0; c < 3; ++c)
+                        texels->rgba.push_back(std::uint8_t(between(0, 256)));
                     texels->rgba.push_back(between(0, 1) < 0.6 ? 255 : 0);
                 }
-                shape.geometry = Bitmap{texels, point(), {between(4, 30), between(4, 20)}, between(0.5, 3), 0.5, i % 2 == 1};
+                shape.geometry = Bitmap{texels,          point(), {between(4, 30), between(4, 20)},
+                                        between(0.5, 3), 0.5,     i % 2 == 1};
                 shape.emission = shape.albedo = Colour(0);
                 break;
             }

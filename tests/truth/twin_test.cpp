@@ -65,13 +65,15 @@ TEST(Twin, EveryRayMeetsWhatTheSweepSays) {
                 }
                 if (std::min(key - found->key_from, found->key_to - key) < 1e-8) continue;
                 const TwinHit hit = twin.hit(p, d);
-                ASSERT_EQ(hit.is_sky, found->piece < 0) << "seed " << seed << " at " << p.x << ", " << p.y << " towards "
-                                                        << d.x << ", " << d.y;
+                ASSERT_EQ(hit.is_sky, found->piece < 0) << "seed " << seed << " at " << p.x << ", "
+                                                        << p.y << " towards " << d.x << ", " << d.y;
                 ++rays;
                 if (hit.is_sky) continue;
                 const auto& piece = boundary.pieces()[std::size_t(found->piece)];
                 const auto& material = boundary.material_of(piece);
-                ASSERT_NEAR(reference::distance_to(piece, p, d), hit.distance, 1e-7 * (1 + hit.distance)) << seed;
+                ASSERT_NEAR(reference::distance_to(piece, p, d), hit.distance,
+                            1e-7 * (1 + hit.distance))
+                    << seed;
                 for (int c = 0; c < 3; ++c) {
                     ASSERT_NEAR(material.emission[c], hit.emission[c], 1e-12) << seed;
                     ASSERT_NEAR(material.albedo[c], hit.albedo[c], 1e-12) << seed;
@@ -108,7 +110,8 @@ struct Scores {
     }
 };
 
-void compare(const Scene& scene, unsigned seed, int points, int samples, double element_length, Scores& scores) {
+void compare(const Scene& scene, unsigned seed, int points, int samples, double element_length,
+             Scores& scores) {
     const Twin twin(scene);
     reference::SolveOptions options;
     options.element_length_px = element_length;
@@ -130,7 +133,8 @@ void compare(const Scene& scene, unsigned seed, int points, int samples, double 
 
 TEST(Twin, DirectLightWithinStandardErrors) {
     Scores scores;
-    for (unsigned seed = 1; seed <= 30; ++seed) compare(random_scene(seed, 10), seed, 3, 20000, 1, scores);
+    for (unsigned seed = 1; seed <= 30; ++seed)
+        compare(random_scene(seed, 10), seed, 3, 20000, 1, scores);
     scores.judge();
 }
 
@@ -152,7 +156,8 @@ TEST(Twin, DeltaLightsOnSurfacesWithinStandardErrors) {
         scene.sky = Sky{};
         scene.lights.push_back(DirectionalLight{40.0 * seed, Colour(1, 2, 3)});
         std::mt19937_64 random(seed);
-        scene.lights.push_back(PointLight{random_free_point(scene, Twin(scene), random), Colour(30, 20, 10)});
+        scene.lights.push_back(
+            PointLight{random_free_point(scene, Twin(scene), random), Colour(30, 20, 10)});
         scene.render.bounces = 2;
         compare(scene, seed, 3, 10000, 1, scores);
     }

@@ -8,7 +8,8 @@
 namespace penumbra::truth {
 namespace {
 
-// Moves every point by x -> rotate(x - about) + about + shift. Bitmaps stay upright: left out of turns.
+// Moves every point by x -> rotate(x - about) + about + shift. Bitmaps stay upright: left out of
+// turns.
 struct Motion {
     double degrees = 0;
     Point about{50, 50};
@@ -17,25 +18,53 @@ struct Motion {
     Point operator()(Point p) const {
         const double r = degrees * kPi / 180;
         const Point d = p - about;
-        return about + shift + Point(d.x * std::cos(r) - d.y * std::sin(r), d.x * std::sin(r) + d.y * std::cos(r));
+        return about + shift +
+               Point(d.x * std::cos(r) - d.y * std::sin(r), d.x * std::sin(r) + d.y * std::cos(r));
     }
-    Geometry moved(Circle g) const { g.center = (*this)(g.center); return g; }
-    Geometry moved(Ellipse g) const { g.center = (*this)(g.center); g.rotation_deg += degrees; return g; }
-    Geometry moved(Rect g) const { g.center = (*this)(g.center); g.rotation_deg += degrees; return g; }
-    Geometry moved(Line g) const { g.from = (*this)(g.from); g.to = (*this)(g.to); return g; }
-    Geometry moved(Polyline g) const { for (Point& p : g.points) p = (*this)(p); return g; }
-    Geometry moved(Polygon g) const { for (Point& p : g.points) p = (*this)(p); return g; }
-    Geometry moved(Bitmap g) const { g.position += shift; return g; }
+    Geometry moved(Circle g) const {
+        g.center = (*this)(g.center);
+        return g;
+    }
+    Geometry moved(Ellipse g) const {
+        g.center = (*this)(g.center);
+        g.rotation_deg += degrees;
+        return g;
+    }
+    Geometry moved(Rect g) const {
+        g.center = (*this)(g.center);
+        g.rotation_deg += degrees;
+        return g;
+    }
+    Geometry moved(Line g) const {
+        g.from = (*this)(g.from);
+        g.to = (*this)(g.to);
+        return g;
+    }
+    Geometry moved(Polyline g) const {
+        for (Point& p : g.points) p = (*this)(p);
+        return g;
+    }
+    Geometry moved(Polygon g) const {
+        for (Point& p : g.points) p = (*this)(p);
+        return g;
+    }
+    Geometry moved(Bitmap g) const {
+        g.position += shift;
+        return g;
+    }
 
     Scene operator()(const Scene& scene) const {
         Scene made = scene;
-        for (Shape& shape : made.shapes) shape.geometry = std::visit([&](const auto& g) { return moved(g); }, shape.geometry);
+        for (Shape& shape : made.shapes)
+            shape.geometry = std::visit([&](const auto& g) { return moved(g); }, shape.geometry);
         for (Light& light : made.lights) {
-            if (auto* p = std::get_if<PointLight>(&light)) p->position = (*this)(p->position);
+            if (auto* p = std::get_if<PointLight>(&light))
+                p->position = (*this)(p->position);
             else if (auto* s = std::get_if<SpotLight>(&light)) {
                 s->position = (*this)(s->position);
                 s->direction_deg += degrees;
-            } else std::get<DirectionalLight>(light).direction_deg += degrees;
+            } else
+                std::get<DirectionalLight>(light).direction_deg += degrees;
         }
         std::vector<SkyStop> stops;
         for (SkyStop stop : made.sky.gradient) {
@@ -44,7 +73,9 @@ struct Motion {
             stops.push_back(stop);
         }
         // Back in order, which steps (equal angles) must keep.
-        std::stable_sort(stops.begin(), stops.end(), [](const SkyStop& a, const SkyStop& b) { return a.angle_deg < b.angle_deg; });
+        std::stable_sort(stops.begin(), stops.end(), [](const SkyStop& a, const SkyStop& b) {
+            return a.angle_deg < b.angle_deg;
+        });
         made.sky.gradient = stops;
         return made;
     }
@@ -53,11 +84,15 @@ struct Motion {
 // Everything within 45 of the middle, so that the square domain cuts nothing at any turn.
 Scene compact_scene(int bounces) {
     Scene scene = empty_scene();
-    scene.sky.gradient = {{20, Colour(0.5, 0.1, 0)}, {100, Colour(1)}, {100, Colour(0.2)}, {260, Colour(0, 0.4, 0.8)}};
+    scene.sky.gradient = {{20, Colour(0.5, 0.1, 0)},
+                          {100, Colour(1)},
+                          {100, Colour(0.2)},
+                          {260, Colour(0, 0.4, 0.8)}};
     add(scene, disc({40, 35}, 9), Colour(2, 1, 0), Colour(0.5));
     add(scene, Ellipse{{64, 40}, {12, 4}, 33}, Colour(0), Colour(0.9, 0.5, 0.1));
     add(scene, box({50, 60}, {30, 8}, 12, 3), Colour(0, 0.2, 0.4), Colour(0.3));
-    add(scene, Polyline{{{25, 45}, {30, 65}, {45, 75}, {60, 70}}, 3, false}, Colour(0), Colour(0.7));
+    add(scene, Polyline{{{25, 45}, {30, 65}, {45, 75}, {60, 70}}, 3, false}, Colour(0),
+        Colour(0.7));
     add(scene, Polygon{{{60, 50}, {80, 62}, {58, 66}, {78, 50}}}, Colour(1, 0, 2), Colour(0.2));
     add(scene, Line{{35, 30}, {60, 22}, 2}, Colour(0.5), Colour(0.4));
     scene.lights = {PointLight{{52, 48}, Colour(10)}, SpotLight{{30, 40}, 20, 10, 40, Colour(9)},
@@ -87,10 +122,12 @@ void expect_same(const Scene& scene, const Motion& motion, double tolerance) {
 }
 
 TEST(WholeScene, TurnedSceneTurnedLight) {
-    for (const double degrees : {90.0, 180.0, 37.0, -123.456, 1e-3}) expect_same(compact_scene(0), {degrees}, 1e-9);
+    for (const double degrees : {90.0, 180.0, 37.0, -123.456, 1e-3})
+        expect_same(compact_scene(0), {degrees}, 1e-9);
 }
 
-// Rings are cut into elements from the same side whatever the turn: equal to the elements' accuracy.
+// Rings are cut into elements from the same side whatever the turn: equal to the elements'
+// accuracy.
 TEST(WholeScene, TurnedSceneTurnedLightWithBounces) { expect_same(compact_scene(2), {61}, 3e-5); }
 
 TEST(WholeScene, MovedSceneMovedLight) {
@@ -159,8 +196,10 @@ TEST(Picture, StrideAndRegionLeaveTheRestOut) {
         for (int x = 0; x < 100; ++x) {
             const bool chosen = x % 4 == 2 && y % 4 == 2 && x >= 10 && x < 70 && y >= 20;
             const float a = *whole.image.at(x, y), b = *part.image.at(x, y);
-            if (chosen && !std::isnan(a)) EXPECT_EQ(a, b);
-            else EXPECT_TRUE(std::isnan(b));
+            if (chosen && !std::isnan(a))
+                EXPECT_EQ(a, b);
+            else
+                EXPECT_TRUE(std::isnan(b));
         }
     }
 }
