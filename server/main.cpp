@@ -14,6 +14,9 @@ int main(int argc, char** argv) {
         add_validate_command,
         add_info_command,
         add_health_command,
+        add_reference_command,
+        add_compare_command,
+        add_bench_command,
     };
     limit_render_threads_to_cpu_quota();
     return run_cli(argc, argv, real_engine(), kCommands);

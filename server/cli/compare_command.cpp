@@ -56,7 +56,7 @@ using Picture = std::variant<ImageF, Image8>;
 Picture read_picture(const std::string& path) {
     const std::string text = read_text(path, std::size_t(4) << 30);
     const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-    if (text.rfind("PF\n", 0) == 0 || text.rfind("Pf\n", 0) == 0) {
+    if (text.rfind("PF", 0) == 0 || text.rfind("Pf", 0) == 0) {
         auto decoded = decode_pfm(bytes);
         if (const auto* error = std::get_if<DecodeError>(&decoded)) throw InputError(path + ": " + error->message);
         return std::move(std::get<ImageF>(decoded));

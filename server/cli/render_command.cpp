@@ -9,6 +9,7 @@
 #include "server/cli/commands.h"
 #include "server/cli/config_options.h"
 #include "server/cli/files.h"
+#include "server/cli/scene_input.h"
 #include "server/cli/scene_report.h"
 #include "server/service/report.h"
 
@@ -19,19 +20,6 @@ struct RenderOptions {
     std::string scene, output, stats, format, device = "auto";
     std::vector<std::string> sets;
 };
-
-// "/canvas/width=64"
-std::vector<Override> parse_sets(const std::vector<std::string>& sets) {
-    std::vector<Override> overrides;
-    for (const std::string& set : sets) {
-        const std::size_t equals = set.find('=');
-        if (equals == std::string::npos || set.empty() || set[0] != '/') {
-            throw InputError("--set takes /json/pointer=value, not " + set);
-        }
-        overrides.push_back({set.substr(0, equals), set.substr(equals + 1)});
-    }
-    return overrides;
-}
 
 // --format, else the file's extension, else the scene's own.
 FormatWishes wishes_of(const RenderOptions& options) {

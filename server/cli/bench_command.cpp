@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+// penumbra bench: time against error for scenes, methods, qualities, sizes and devices, as JSON lines.
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "server/bench/bench.h"
+#include "server/cli/commands.h"
+#include "server/cli/files.h"
+#include "server/cli/progress.h"
+
+namespace penumbra {
+namespace {
+
+struct BenchOptions {
+    std::vector<std::string> scenes;
+    std::vector<std::string> methods = {"rc"};
+    std::vector<std::string> qualities = {"draft", "standard", "high"};
+    std::vector<int> sizes = {256, 512, 1024};
+    std::vector<std::string> devices = {"auto"};
+    std::string output = "-";
+    std::string truths = "out/truth";
+    bool fresh = false;
+    BenchSettings settings;
+};
+
+void tell(const std::string& row_text) {
+    const auto row = nlohmann::json::parse(row_text);
+    std::string error = "-";
+    if (row.contains("errors") && !row["errors"]["rel"].is_null()) {
+        char text[64];
+        std::snprintf(text, sizeof text, "nrmse %.4f rel %.4f", row["errors"]["nrmse"].get<double>(),
+                      row["errors"]["rel"].get<double>());
+        error = text;
+    }
+    std::fprintf(stderr, "%-14s %5dx%-5d %-10s %-9s %-4s gpu %9.2f ms  cpu %9.2f ms  %s\n",
+                 row["scene"].get<std::string>().c_str(), row["width"].get<int>(), row["height"].get<int>(),
+                 row["method"].get<std::string>().c_str(), row["quality"].get<std::string>().c_str(),
+                 row["device"].get<std::string>().c_str(), row["gpu_ms"]["median"].get<double>(),
+                 row["cpu_ms"]["median"].get<double>(), error.c_str());
+}
+
+int run_bench(const BenchOptions& options, const Engine& engine) {
+    const bool to_file = options.output != "-";
+    if (options.fresh && to_file) std::ofstream(options.output, std::ios::trunc);
+    const std::set<std::string> done = to_file ? finished_cases(options.output) : std::set<std::string>();
+    const TruthCache truths(options.truths);
+    std::size_t failed = 0;
+    std::size_t kept = 0;
+    for (const std::string& device : options.devices) {
+        const auto backend = engine.make_backend({.device = device, .shader_dir = {}});
+        for (const std::string& scene : options.scenes)
+            for (const int size : options.sizes)
+                for (const std::string& method : options.methods)
+                    for (const std::string& quality : options.qualities) {
+                        const BenchCase bench_case{scene, size, method, quality, device};
+                        if (done.count(case_key(bench_case, backend->device())) > 0) {
+                            ++kept;
+                            continue;
+                        }
+                        try {
+                            Progress progress("solving " + scene);
+                            const std::string row = run_case(bench_case, options.settings, *backend, engine, truths,
+                                                             [&](double f) { progress.update(f); return true; });
+                            if (to_file) {
+                                std::ofstream(options.output, std::ios::app) << row << "\n";
+                            } else {
+                                std::cout << row << "\n" << std::flush;
+                            }
+                            tell(row);
+                        } catch (const std::runtime_error& error) {
+                            complain(scene + " (" + method + ", " + quality + ", " + std::to_string(size) + "): " + error.what());
+                            ++failed;
+                        }
+                    }
+    }
+    if (kept > 0) std::fprintf(stderr, "%zu cases were in %s already (--fresh starts over)\n", kept, options.output.c_str());
+    if (failed > 0) std::fprintf(stderr, "%zu cases could not be measured\n", failed);
+    return failed == 0 ? kSuccess : kWorldFailed;
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, CommandContext& context) {
+    CLI::App* command = app.add_subcommand("bench", "Measure time against error (see docs/benchmarks.md)");
+    auto options = std::make_shared<BenchOptions>();
+    command->add_option("scenes", options->scenes, "Scene files")->required()->check(CLI::ExistingFile);
+    command->add_option("--methods", options->methods, "Methods")->delimiter(',')->capture_default_str();
+    command->add_option("--qualities", options->qualities, "Qualities")->delimiter(',')->capture_default_str();
+    command->add_option("--sizes", options->sizes, "Pixels along x, 0 for the scene's own size")->delimiter(',')->capture_default_str();
+    command->add_option("--devices", options->devices, "Devices: auto, cpu, gpu or an index")->delimiter(',')->capture_default_str();
+    command->add_option("-o,--output", options->output,
+                        "Results, a line of JSON a case; what the file holds already is not measured again");
+    command->add_flag("--fresh", options->fresh, "Measure all cases anew");
+    command->add_option("--truths", options->truths, "Folder of exact solutions, kept by the scene's hash")->capture_default_str();
+    command->add_flag("!--no-errors", options->settings.errors, "Measure time only");
+    command->add_option("--repeats", options->settings.repeats, "Measured renders a case")->check(CLI::Range(1, 1000))->capture_default_str();
+    command->add_option("--warm-up", options->settings.warm_up, "Renders before them")->check(CLI::Range(0, 100))->capture_default_str();
+    command->add_option("--most-seconds", options->settings.most_seconds, "Of one case; three renders are always made")->capture_default_str();
+    command->add_option("--truth-pixels", options->settings.truth_pixels,
+                        "Larger pictures are compared at every N-th pixel, about this many a side")
+        ->check(CLI::Range(1, 8192))->capture_default_str();
+    command->callback([&context, options] {
+        context.run = [&context, options]() -> int {
+            try {
+                return run_bench(*options, context.engine);
+            } catch (const InputError& error) {
+                complain(error.what());
+                return kBadInput;
+            }
+        };
+    });
+}
+
+}  // namespace penumbra
