@@ -37,16 +37,24 @@ int march(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, ino
     float stop = min(end, leave);
     float t = start;
     ivec2 last_pixel = textureSize(distance_texture, 0) - 1;
+    int hit = -1;
+    vec2 hit_at = p;
+    int fate = kRayBlocked;
     while (budget > 0) {
-        --budget;
-        if (t >= stop) return leave <= end ? kRayLeft : kRayPassed;
-        vec2 at = p + d * t;
-        ivec2 pixel = clamp(ivec2(floor(at)) + border, ivec2(0), last_pixel);
-        float room = texelFetch(distance_texture, pixel, 0).r;
-        if (room >= kNear) {
+        // The tight loop: free steps far from any surface. What is inside the outer loop alone is paid once per
+        // approach, not once per step (llvmpipe runs both sides of a branch).
+        ivec2 pixel = ivec2(0);
+        float room = 0.0;
+        vec2 at = p;
+        while (t < stop && budget > 0) {
+            --budget;
+            at = p + d * t;
+            pixel = clamp(ivec2(floor(at)) + border, ivec2(0), last_pixel);
+            room = texelFetch(distance_texture, pixel, 0).r;
+            if (room < kNear) break;
             t += room - kHalfDiagonal;
-            continue;
         }
+        if (t >= stop) { fate = leave <= end ? kRayLeft : kRayPassed; break; }
         float step = kShortestStep;
         int shape = texelFetch(material_texture, pixel, 0).r;
         if (shape >= 0) {
@@ -60,14 +68,18 @@ int march(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, ino
                 budget -= type == kShapeEllipse ? kEllipseIterations : int(head.w);
             }
             if (exact <= 0.0) {
-                radiance = shape_emission(shape, vec2(pixel - border) + 0.5);
-                if (type != kShapeBitmap) radiance *= texelFetch(shape_records, shape * kShapeTexels + 1).w;
-                return kRayBlocked;
+                hit = shape;
+                hit_at = vec2(pixel - border) + 0.5;
+                break;
             }
             // Another shape may be nearer here than at the pixel's centre: stay within the pixel.
             step = clamp(exact, kShortestStep, kHalfDiagonal);
         }
         t += step;
     }
-    return kRayBlocked;
+    if (hit >= 0) {
+        radiance = shape_emission(hit, hit_at);
+        if (int(texelFetch(shape_records, hit * kShapeTexels).x) != kShapeBitmap) radiance *= texelFetch(shape_records, hit * kShapeTexels + 1).w;
+    }
+    return fate;
 }
