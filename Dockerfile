@@ -37,12 +37,13 @@ COPY --from=build /src/build/release/penumbra /usr/local/bin/penumbra
 # The one path that is written to: compiled shaders, a few hundred KB. Give it a tmpfs when the root is
 # read-only; without a writable path each start compiles anew (under a second more).
 ENV MESA_SHADER_CACHE_DIR=/var/cache/penumbra \
-    MALLOC_ARENA_MAX=2
-# Any other user id works as well.
+    MALLOC_ARENA_MAX=2 \
+    PENUMBRA_HOST=0.0.0.0
+# Any other user id works as well. Options come as arguments or as PENUMBRA_..., which the health check follows.
 USER 10001:10001
 EXPOSE 8080
 HEALTHCHECK --interval=30s --timeout=5s --start-period=30s --retries=3 \
-    CMD ["penumbra", "health", "--url", "http://127.0.0.1:8080"]
+    CMD ["penumbra", "health"]
 # One process without children that handles its signals: it needs no init in front.
 ENTRYPOINT ["penumbra"]
-CMD ["serve", "--host", "0.0.0.0"]
+CMD ["serve"]
