@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "core/renderer.h"
 
-#include <cassert>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <thread>
+#include <type_traits>
 
 #include "core/gl/context.h"
 #include "core/gl/loop_limit.h"
@@ -29,37 +30,90 @@ double ms_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-// Records each pass's time and size while the frame runs.
+// Records each pass's time and size while the frame runs. Bands of one pass add up in one record.
 class Recorder {
 public:
-    explicit Recorder(gl::PassTimer& timer) : timer_(timer) {}
+    explicit Recorder(gl::PassTimer& timer) : timer_(timer) { timer_.reset(); }
 
     template <class Run>
-    void pass(std::string name, glm::ivec2 extent, Run&& run) {
+    void pass(const std::string& name, glm::ivec2 extent, Run&& run) {
         const Clock::time_point start = Clock::now();
         timer_.mark();
         const PassWork work = run();
         timer_.mark();
         gl::check_errors(name.c_str());
-        PassStats stats;
-        stats.name = std::move(name);
-        stats.wall_ms = ms_since(start);
-        stats.width = extent.x;
-        stats.height = extent.y;
-        stats.dispatches = static_cast<std::uint64_t>(work.dispatches);
-        stats.rays = work.rays;
-        passes_.push_back(std::move(stats));
+        PassStats& stats = add(name, extent, ms_since(start));
+        stats.dispatches += static_cast<std::uint64_t>(work.dispatches);
+        stats.rays += work.rays;
+        stats.bytes += work.bytes;
+        marked_.push_back(static_cast<std::size_t>(&stats - passes_.data()));
+    }
+
+    template <class Run>
+    void host(const std::string& name, glm::ivec2 extent, Run&& run) {
+        const Clock::time_point start = Clock::now();
+        run();
+        add(name, extent, ms_since(start));
     }
 
     std::vector<PassStats> finish() {
         const std::vector<double> device_ms = timer_.read();
-        for (std::size_t i = 0; i < passes_.size() && i < device_ms.size(); ++i) passes_[i].gpu_ms = device_ms[i];
+        for (std::size_t i = 0; i < marked_.size() && i < device_ms.size(); ++i) passes_[marked_[i]].gpu_ms += device_ms[i];
         return std::move(passes_);
     }
 
 private:
+    PassStats& add(const std::string& name, glm::ivec2 extent, double wall_ms) {
+        auto found = std::find_if(passes_.begin(), passes_.end(), [&](const PassStats& p) { return p.name == name; });
+        if (found == passes_.end()) {
+            passes_.emplace_back();
+            passes_.back().name = name;
+            passes_.back().width = extent.x;
+            found = passes_.end() - 1;
+        }
+        found->height += extent.y;
+        found->wall_ms += wall_ms;
+        return *found;
+    }
+
     gl::PassTimer& timer_;
     std::vector<PassStats> passes_;
+    std::vector<std::size_t> marked_;  // the pass of each pair of marks
+};
+
+// Collects the bands of the picture, without their alpha.
+class Reader {
+public:
+    Reader(glm::ivec2 canvas, bool linear) {
+        if (linear)
+            picture_ = ImageF(canvas.x, canvas.y, 3);
+        else
+            picture_ = Image8(canvas.x, canvas.y, 3);
+    }
+
+    void read(const gl::Texture2D& band, int first_row) {
+        std::visit([&](auto& picture) { read_into(picture, band, first_row); }, picture_);
+    }
+
+    std::variant<Image8, ImageF> take() { return std::move(picture_); }
+
+private:
+    template <class T>
+    static void read_into(BasicImage<T>& picture, const gl::Texture2D& band, int first_row) {
+        const glm::ivec2 size = band.size();
+        BasicImage<T> rgba(size.x, size.y, 4);
+        band.read(GL_RGBA, std::is_same_v<T, float> ? GL_FLOAT : GL_UNSIGNED_BYTE, rgba.data.data());
+        const std::size_t count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+        const T* from = rgba.data.data();
+        T* to = picture.at(0, first_row);
+        for (std::size_t i = 0; i < count; ++i, from += 4, to += 3) {
+            to[0] = from[0];
+            to[1] = from[1];
+            to[2] = from[2];
+        }
+    }
+
+    std::variant<Image8, ImageF> picture_;
 };
 
 }  // namespace
@@ -95,7 +149,6 @@ struct Renderer::Impl {
     }
 
     RenderResult render(const Scene& scene);
-    std::variant<Image8, ImageF> read_back(const gl::Texture2D& picture, bool linear);
     void check_thread() const {
         if (std::this_thread::get_id() != thread)
             throw DeviceError("The renderer was used on another thread than the one that made it.");
@@ -157,22 +210,19 @@ RenderResult Renderer::Impl::render(const Scene& scene) {
         radiance.fill(GL_RGBA, GL_FLOAT, black);
     }
 
-    gl::Texture2D picture;
-    record.pass("compose", plan.canvas,
-                [&] { return compose.run(plan, scene, linear, radiance, field, slicing, picture); });
-
-    const Clock::time_point read_start = Clock::now();
     RenderResult result;
-    result.picture = read_back(picture, linear);
-    PassStats read;
-    read.name = "read";
-    read.wall_ms = ms_since(read_start);
-    read.width = plan.canvas.x;
-    read.height = plan.canvas.y;
+    Reader reader(plan.canvas, linear);
+    for (int row = 0; row < plan.canvas.y; row += plan.band_rows) {
+        const int rows = std::min(plan.band_rows, plan.canvas.y - row);
+        gl::Texture2D band(linear ? GL_RGBA32F : GL_RGBA8, {plan.canvas.x, rows});
+        record.pass("compose", {plan.canvas.x, rows},
+                    [&] { return compose.run(plan, scene, linear, radiance, field, slicing, row, band); });
+        record.host("read", {plan.canvas.x, rows}, [&] { reader.read(band, row); });
+    }
+    result.picture = reader.take();
 
     RenderStats& stats = result.stats;
     stats.passes = record.finish();
-    stats.passes.push_back(read);
     stats.device = info.renderer;
     stats.method = plan.method;
     stats.method_reason = plan.method_reason;
@@ -184,27 +234,6 @@ RenderResult Renderer::Impl::render(const Scene& scene) {
     return result;
 }
 
-std::variant<Image8, ImageF> Renderer::Impl::read_back(const gl::Texture2D& picture, bool linear) {
-    const glm::ivec2 size = picture.size();
-    const auto drop_alpha = [&](auto& rgba, auto& rgb) {
-        const std::size_t count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
-        for (std::size_t i = 0; i < count; ++i)
-            for (std::size_t c = 0; c < 3; ++c) rgb.data[3 * i + c] = rgba.data[4 * i + c];
-    };
-    if (linear) {
-        ImageF rgba(size.x, size.y, 4);
-        ImageF rgb(size.x, size.y, 3);
-        picture.read(GL_RGBA, GL_FLOAT, rgba.data.data());
-        drop_alpha(rgba, rgb);
-        return rgb;
-    }
-    Image8 rgba(size.x, size.y, 4);
-    Image8 rgb(size.x, size.y, 3);
-    picture.read(GL_RGBA, GL_UNSIGNED_BYTE, rgba.data.data());
-    drop_alpha(rgba, rgb);
-    return rgb;
-}
-
 Renderer::Renderer(const RendererOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 
 Renderer::~Renderer() = default;
@@ -213,6 +242,7 @@ const DeviceInfo& Renderer::device() const { return impl_->info; }
 
 RenderResult Renderer::render(const Scene& scene) {
     impl_->check_thread();
+    impl_->context.make_current();
     return impl_->render(scene);
 }
 

@@ -44,7 +44,7 @@ struct RenderResult {
     RenderStats stats;
 };
 
-// Owns the one GL context. Create, use and destroy it on the same thread (checked).
+// Owns a GL context. Create, use and destroy it on the same thread (use is checked).
 class Renderer {
 public:
     explicit Renderer(const RendererOptions& options = {});  // throws DeviceError

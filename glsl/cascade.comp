@@ -25,7 +25,7 @@ void main() {
     int group = tile.y * params.tiles.x + tile.x;
     vec2 p = params.first_probe + vec2(probe) * params.spacing;
 
-    if (interpolated_distance(p, params.border, textureSize(distance_texture, 0) - 1) <= 0.0) {
+    if (starts_inside(p, params.border)) {
         imageStore(cascade_image, texel, vec4(0.0));
         return;
     }
@@ -43,15 +43,17 @@ void main() {
         vec2 d = vec2(centre.x * c - centre.y * s, centre.y * c + centre.x * s);
         int direction = 4 * group + m;
         vec3 radiance;
-        int fate = march(p, d, params.start, params.end, params.domain, params.border, budget, radiance);
-        if (fate == kRayLeft || (fate == kRayPassed && params.is_last != 0)) {
-            radiance = sky_radiance(direction);
-        } else if (fate == kRayPassed) {
-            ivec2 upper_tile = ivec2(direction % params.upper_tiles.x, direction / params.upper_tiles.x);
+        vec4 above = vec4(0.0);
+        if (params.is_last == 0) {
             // The mean over those of the four probes that are in free space.
-            vec4 above = textureLod(upper_texture, (vec2(upper_tile * params.upper_probes) + upper_probe) * params.upper_texel, 0.0);
-            radiance = above.a > 0.0 ? above.rgb / above.a : vec3(0.0);
+            ivec2 upper_tile = ivec2(direction % params.upper_tiles.x, direction / params.upper_tiles.x);
+            above = textureLod(upper_texture, (vec2(upper_tile * params.upper_probes) + upper_probe) * params.upper_texel, 0.0);
         }
+        // Where none is, and after the last cascade, the ray goes on alone until it meets something.
+        float end = above.a > 0.0 ? params.end : kNeverLeaves;
+        int fate = march(p, d, params.start, end, params.domain, params.border, budget, radiance);
+        if (fate == kRayLeft) radiance = sky_radiance(direction);
+        if (fate == kRayPassed) radiance = above.rgb / above.a;
         sum += radiance;
     }
     imageStore(cascade_image, texel, vec4(0.25 * sum, 1.0));

@@ -33,9 +33,10 @@ vec3 pixel_radiance(ivec2 pixel) {
 }
 
 void main() {
-    ivec2 pixel = params.origin + ivec2(gl_GlobalInvocationID.xy);
+    ivec2 texel = params.origin + ivec2(gl_GlobalInvocationID.xy);
+    ivec2 pixel = texel + ivec2(0, params.first_row);
     if (pixel.x >= params.extent.x || pixel.y >= params.extent.y) return;
     vec3 radiance = max(pixel_radiance(pixel) * params.exposure, vec3(0.0));
     vec3 encoded = srgb_encode(clamp(tonemap(radiance, params.tonemap, params.white), 0.0, 1.0));
-    imageStore(picture_image, pixel, vec4(encoded, 1.0));
+    imageStore(picture_image, texel, vec4(encoded, 1.0));
 }

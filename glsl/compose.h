@@ -31,6 +31,10 @@ struct ComposeParams {
     float radiance_scale; // what the radiance texture must be multiplied with
     float white;         // Reinhard extended: the radiance that becomes 1
     int has_shapes;
+    int first_row;       // of the canvas in the image: tall pictures are composed in bands
+    int pad0;
+    int pad1;
+    int pad2;
 };
 
 #ifdef __cplusplus

@@ -9,8 +9,9 @@ layout(local_size_x = kComposeGroupX, local_size_y = kComposeGroupY) in;
 layout(rgba32f, binding = kComposeImageBinding) writeonly uniform image2D linear_image;
 
 void main() {
-    ivec2 pixel = params.origin + ivec2(gl_GlobalInvocationID.xy);
+    ivec2 texel = params.origin + ivec2(gl_GlobalInvocationID.xy);
+    ivec2 pixel = texel + ivec2(0, params.first_row);
     if (pixel.x >= params.extent.x || pixel.y >= params.extent.y) return;
     bool solid = params.has_shapes != 0 && pixel_distance(pixel) <= 0.0;
-    imageStore(linear_image, pixel, vec4(solid ? solid_radiance(pixel) : floor_radiance(pixel), 1.0));
+    imageStore(linear_image, texel, vec4(solid ? solid_radiance(pixel) : floor_radiance(pixel), 1.0));
 }

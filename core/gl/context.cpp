@@ -98,8 +98,14 @@ public:
         }
     }
 
+    void make_current() override {
+        if (eglGetCurrentContext() == context_) return;
+        if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE)
+            throw DeviceError("The context cannot be made current (" + egl_error() + ").");
+    }
+
     ~EglBackend() override {
-        eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        if (eglGetCurrentContext() == context_) eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         eglDestroyContext(display_, context_);
         // The display stays: it is the process's, and others may be creating on it (maplibre-native 4332).
         eglReleaseThread();

@@ -35,11 +35,15 @@ public:
 
     const ContextInfo& info() const { return info_; }
 
+    // Another context may have been made current on this thread since.
+    void make_current() { backend_->make_current(); }
+
     static std::vector<EglDeviceListing> list_devices();
 
     // What made the context; destroyed with it.
     struct Backend {
         virtual ~Backend() = default;
+        virtual void make_current() = 0;  // throws DeviceError
     };
 
 private:

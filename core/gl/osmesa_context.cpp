@@ -22,6 +22,12 @@ public:
             throw DeviceError("The OSMesa context cannot be made current.");
         }
     }
+    void make_current() override {
+        if (OSMesaGetCurrentContext() == context_) return;
+        if (OSMesaMakeCurrent(context_, pixel_.data(), GL_UNSIGNED_BYTE, 1, 1) == GL_FALSE)
+            throw DeviceError("The OSMesa context cannot be made current.");
+    }
+
     ~OsmesaBackend() override { OSMesaDestroyContext(context_); }
 
 private:

@@ -16,6 +16,7 @@ public:
     PassTimer& operator=(const PassTimer&) = delete;
     ~PassTimer();
 
+    void reset() { used_ = 0; }
     void mark();
     // Milliseconds between marks 2i and 2i+1; waits for the device.
     std::vector<double> read();

@@ -57,6 +57,7 @@ PassWork CascadePass::run(const Plan& plan, std::size_t level, const Sky& sky, c
     PassWork work;
     work.dispatches = program_.dispatch(params, c.texture, slicing.rays / 4);
     work.rays = 4 * static_cast<std::size_t>(c.texture.x) * static_cast<std::size_t>(c.texture.y);
+    work.bytes = out.bytes();
     return work;
 }
 

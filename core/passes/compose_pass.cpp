@@ -27,8 +27,7 @@ ComposePass::ComposePass(const std::string& shader_dir)
       linear_("linear.comp", sizeof(glsl::ComposeParams), shader_dir) {}
 
 PassWork ComposePass::run(const Plan& plan, const Scene& scene, bool linear, const gl::Texture2D& radiance,
-                          const DistanceField& field, const Slicing& slicing, gl::Texture2D& out) {
-    out = gl::Texture2D(linear ? GL_RGBA32F : GL_RGBA8, plan.canvas);
+                          const DistanceField& field, const Slicing& slicing, int first_row, gl::Texture2D& out) {
     glsl::ComposeParams params{};
     params.extent = plan.canvas;
     params.border = plan.grid.border;
@@ -38,13 +37,15 @@ PassWork ComposePass::run(const Plan& plan, const Scene& scene, bool linear, con
     params.exposure = static_cast<float>(std::exp2(scene.output.exposure_ev));
     params.radiance_scale = static_cast<float>(plan.radiance_scale);
     params.white = kReinhardWhite;
+    params.first_row = first_row;
     params.has_shapes = scene.shapes.empty() ? 0 : 1;
     radiance.bind_texture(glsl::kComposeRadianceUnit);
     field.distance.bind_texture(glsl::kComposeDistanceUnit);
     field.material.bind_texture(glsl::kComposeMaterialUnit);
     out.bind_image(glsl::kComposeImageBinding, GL_WRITE_ONLY);
     PassWork work;
-    work.dispatches = (linear ? linear_ : display_).dispatch(params, plan.canvas, slicing.pixels);
+    work.dispatches = (linear ? linear_ : display_).dispatch(params, out.size(), slicing.pixels);
+    work.bytes = out.bytes();
     return work;
 }
 

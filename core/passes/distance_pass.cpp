@@ -25,6 +25,7 @@ PassWork DistancePass::run(const Plan& plan, const Slicing& slicing, DistanceFie
         work.dispatches += program_.dispatch(params, plan.grid.size, slicing.distance_iterations / shapes);
         params.continues = 1;
     }
+    work.bytes = plan.shape_slices.size() * (out.distance.bytes() + out.material.bytes());
     return work;
 }
 

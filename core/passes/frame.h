@@ -25,6 +25,7 @@ struct Slicing {
 struct PassWork {
     int dispatches = 0;
     std::size_t rays = 0;
+    std::size_t bytes = 0;  // written to textures
 };
 
 }  // namespace penumbra

@@ -34,6 +34,7 @@ PassWork JumpFloodPass::run(const Plan& plan, const Slicing& slicing, DistanceFi
 
     to.bind_texture(glsl::kJumpSeedsUnit);
     work.dispatches += merge_.dispatch(params, plan.grid.size, slicing.pixels);
+    work.bytes = (plan.jump_steps.size() + 1) * to.bytes();
     return work;
 }
 

@@ -35,6 +35,7 @@ PassWork ReferencePass::run(const Plan& plan, const Sky& sky, const SceneBuffers
     }
     work.rays = static_cast<std::size_t>(plan.reference.rays) * static_cast<std::size_t>(plan.canvas.x) *
                 static_cast<std::size_t>(plan.canvas.y);
+    work.bytes = out.bytes();
     return work;
 }
 

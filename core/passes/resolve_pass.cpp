@@ -22,6 +22,7 @@ PassWork ResolvePass::run(const Plan& plan, const gl::Texture2D& cascade, const 
     out.bind_image(glsl::kResolveImageBinding, GL_WRITE_ONLY);
     PassWork work;
     work.dispatches = program_.dispatch(params, plan.canvas, slicing.pixels);
+    work.bytes = out.bytes();
     return work;
 }
 

@@ -16,6 +16,9 @@ namespace {
 // loop's last test may count as well.
 constexpr std::size_t kIterationsPerSlice = 30000;
 
+// The composed picture leaves the device in bands of this size.
+constexpr std::size_t kBandBytes = std::size_t(64) << 20;
+
 // Loop iterations of the distance to a shape.
 std::size_t distance_iterations(const Shape& shape) {
     const bool ellipse = std::holds_alternative<Ellipse>(shape.geometry);
@@ -192,7 +195,10 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
     check_size(plan.grid.size, 4, limits, "distance field");
     for (const CascadePlan& c : plan.cascades) check_size(c.texture, texel, limits, "cascade");
 
-    plan.gpu_bytes = 8 * area(plan.grid.size) + 4 * area(plan.canvas);
+    // Linear pictures of 8192 x 8192 would be a GiB at once, more than llvmpipe holds in a texture.
+    const std::size_t row_bytes = static_cast<std::size_t>(plan.canvas.x) * (scene.output.format == "png" ? 4 : 16);
+    plan.band_rows = static_cast<int>(std::clamp<std::size_t>(kBandBytes / row_bytes, 1, static_cast<std::size_t>(plan.canvas.y)));
+    plan.gpu_bytes = 8 * area(plan.grid.size) + row_bytes * static_cast<std::size_t>(plan.band_rows);
     if (!plan.jump_steps.empty()) plan.gpu_bytes += 8 * area(plan.grid.size);
     if (!plan.cascades.empty()) plan.gpu_bytes += 2 * largest_area * texel;
     if (plan.reference.rays > 0) plan.gpu_bytes += 16 * area(plan.canvas);

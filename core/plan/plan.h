@@ -66,6 +66,7 @@ struct Plan {
     bool resolve = false;               // false: cascade 0 already is the mean radiance per pixel
     bool half_floats = false;           // cascades in 16 bits, emission scaled to [0, 1]
     double radiance_scale = 1;          // emission is divided by this before it is packed
+    int band_rows = 0;                  // the picture is composed and read this many rows at a time
     std::size_t gpu_bytes = 0;          // of textures, the packed scene left out
     std::vector<SkippedWork> skipped;
 };

@@ -30,6 +30,21 @@ float interpolated_distance(vec2 p, ivec2 border, ivec2 last_pixel) {
     return mix(top, bottom, f.y);
 }
 
+// Whether a march from p would be blocked at once: the question that march() asks, of the same outline.
+bool starts_inside(vec2 p, ivec2 border) {
+    ivec2 last_pixel = textureSize(distance_texture, 0) - 1;
+    ivec2 pixel = clamp(ivec2(floor(p)) + border, ivec2(0), last_pixel);
+    float room = texelFetch(distance_texture, pixel, 0).r;
+    if (room >= kNear) return false;
+    float d = interpolated_distance(p, border, last_pixel);
+    int shape = texelFetch(material_texture, pixel, 0).r;
+    if (shape < 0) return d <= 0.0;
+    vec4 head = texelFetch(shape_records, shape * kShapeTexels);
+    if (int(head.x) == kShapeBitmap) return room <= 0.0;
+    if (head.w > float(kMostMarchedEdges)) return d <= 0.0;
+    return shape_distance(shape, p, kFar) <= 0.0;
+}
+
 // Radiance met between start and end along the ray. Spends of the invocation's loop iterations.
 int march(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, inout int budget, out vec3 radiance) {
     radiance = vec3(0.0);
@@ -75,7 +90,8 @@ int march(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, ino
             // Another shape may be nearer here than at the pixel's centre: stay within the pixel.
             step = clamp(exact, kShortestStep, kHalfDiagonal);
         }
-        t += step;
+        // The last step of an interval ends on its end: what is met there is not left to other probes.
+        t = t + step >= stop && t < stop - 0.01 ? stop - 0.005 : t + step;
     }
     if (hit >= 0) {
         radiance = shape_emission(hit, hit_at);
