@@ -288,6 +288,16 @@ TEST(MakePlan, RefusesWhatTheDeviceCannotHold) {
     EXPECT_THROW(make_plan(scene_of(1001, 10), small), DeviceError);
 }
 
+TEST(MakePlan, PicturesLeaveTheDeviceInBandsOfWholeRows) {
+    Scene scene = scene_of(8192, 8192);
+    scene.sky.radiance = Colour(1);
+    scene.output.format = "pfm";
+    const int rows = make_plan(scene, {}).band_rows;
+    EXPECT_GE(rows, 1);
+    EXPECT_LE(std::size_t(rows) * 8192 * 16, DeviceLimits().max_texture_bytes);
+    EXPECT_EQ(make_plan(scene_of(7, 5), {}).band_rows, 5) << "no more than there are";
+}
+
 // ---- packing ------------------------------------------------------------------------------------
 
 const glm::vec4& texel(const PackedScene& packed, int shape, int row) {

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+// From radiance to the picture: tone curves, sRGB, exposure, edges, orientation, the linear picture.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "tests/support/build_scene.h"
+#include "tests/support/pictures.h"
+#include "tests/support/shared_renderer.h"
+
+namespace penumbra::test {
+namespace {
+
+using Codes = std::array<int, 3>;
+
+// A pixel of a scene that holds only a sky is that sky, through exposure and tone map.
+Codes codes_of(Colour radiance, const std::string& tonemap, double exposure_ev = 0) {
+    Scene scene = canvas(3, 2);
+    scene.sky.radiance = radiance;
+    scene.output.tonemap = tonemap;
+    scene.output.exposure_ev = exposure_ev;
+    const Image8 picture = render_display(scene);
+    for (std::size_t i = 3; i < picture.data.size(); ++i) EXPECT_EQ(picture.data[i], picture.data[i % 3]);
+    return {picture.data[0], picture.data[1], picture.data[2]};
+}
+
+// Codes computed apart from this program (double precision, the published formulas), red first. The row is
+// 0.01 0.18 0.5 1 4 16 in grey, then (1,0,0), (10,1,.1) and (.8,.4,.1).
+struct Curve {
+    const char* name;
+    std::array<int, 6> red_of_grey;
+    std::array<Codes, 3> colours;
+};
+constexpr Curve kCurves[] = {
+    {"reinhard", {25, 109, 156, 188, 231, 248}, {{{188, 0, 0}, {245, 188, 85}, {178, 146, 85}}}},
+    {"reinhard_extended", {25, 109, 158, 193, 255, 255}, {{{193, 0, 0}, {255, 193, 85}, {182, 147, 85}}}},
+    {"aces", {3, 91, 165, 206, 245, 254}, {{{216, 0, 9}, {255, 224, 159}, {196, 150, 75}}}},
+    {"agx", {18, 128, 174, 202, 239, 254}, {{{221, 56, 56}, {255, 212, 175}, {198, 167, 112}}}},
+    {"pbr_neutral", {2, 105, 181, 240, 253, 255}, {{{241, 33, 33}, {254, 205, 199}, {226, 162, 69}}}},
+};
+
+TEST(Tonemap, GoldenValues) {
+    const double greys[] = {0.01, 0.18, 0.5, 1, 4, 16};
+    const Colour colours[] = {{1, 0, 0}, {10, 1, 0.1}, {0.8, 0.4, 0.1}};
+    // One code: single precision may fall on the other side of a rounding edge.
+    constexpr int kBound = 1;
+    int off = 0;
+    for (const Curve& curve : kCurves) {
+        for (std::size_t i = 0; i < 6; ++i) {
+            const int code = codes_of(Colour(greys[i]), curve.name)[0];
+            EXPECT_NEAR(code, curve.red_of_grey[i], kBound) << curve.name << " of " << greys[i];
+            off += code != curve.red_of_grey[i];
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Codes codes = codes_of(colours[i], curve.name);
+            for (std::size_t c = 0; c < 3; ++c) {
+                EXPECT_NEAR(codes[c], curve.colours[i][c], kBound) << curve.name << " of colour " << i << " channel " << c;
+                off += codes[c] != curve.colours[i][c];
+            }
+        }
+    }
+    EXPECT_LE(off, 2) << "of 75 codes";
+}
+
+TEST(Tonemap, HugeRadianceStaysWhite) {
+    for (const Curve& curve : kCurves)
+        for (const int code : codes_of(Colour(1e9), curve.name, 20)) EXPECT_GE(code, 254) << curve.name;
+    for (const int code : codes_of(Colour(1e9), "none", 64)) EXPECT_EQ(code, 255);
+}
+
+TEST(Tonemap, BlackStaysBlack) {
+    for (const Curve& curve : kCurves)
+        for (const int code : codes_of(Colour(0), curve.name)) EXPECT_EQ(code, 0) << curve.name;
+}
+
+TEST(Srgb, All256CodesSurvive) {
+    // A ramp of bitmaps would do as well, but a sky goes the whole way through the cascades.
+    for (int code = 0; code < 256; code += 3) {
+        const Codes wanted = {code, std::min(code + 1, 255), std::min(code + 2, 255)};
+        const Colour sky(srgb_decode(wanted[0]), srgb_decode(wanted[1]), srgb_decode(wanted[2]));
+        EXPECT_EQ(codes_of(sky, "none"), wanted);
+    }
+}
+
+TEST(Srgb, ClipsAtWhite) { EXPECT_EQ(codes_of({1.5, 0.9999, 2}, "none"), (Codes{255, 255, 255})); }
+
+TEST(Exposure, IsAPowerOfTwoBeforeTheToneMap) {
+    for (const char* tonemap : {"none", "agx"})
+        for (const double ev : {-3.0, -0.5, 1.0, 4.25}) {
+            const Colour sky(0.03, 0.2, 0.011);
+            const Codes exposed = codes_of(sky, tonemap, ev);
+            const Codes brighter = codes_of(sky * std::exp2(ev), tonemap);
+            for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(exposed[c], brighter[c], 1) << tonemap << " " << ev;
+        }
+    EXPECT_EQ(codes_of(Colour(0.18), "none", 1)[0], srgb_encode(0.36));
+}
+
+TEST(Exposure, LeavesTheLinearPictureAlone) {
+    Scene scene = canvas(4, 3);
+    scene.sky.radiance = Colour(0.4);
+    scene.output.exposure_ev = 3;
+    scene.output.tonemap = "agx";
+    EXPECT_NEAR(mean(render_linear(scene)), 0.4, 1e-6);
+}
+
+TEST(Linear, FloorAlbedoCountsOnFreePixelsAndEmissionOnSolidOnes) {
+    Scene scene = with(canvas(24, 16), {shape(Circle{{8.2, 8.1}, 4}, {2, 3, 4}), shape(Rect{{18.1, 8.2}, {4, 6}, 0, 0})});
+    const ImageF white = render_linear(scene);
+    scene.canvas.floor_albedo = {0.5, 0.25, 0};
+    const ImageF tinted = render_linear(scene);
+    int solid = 0;
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 24; ++x) {
+            const bool lamp = std::hypot(x + 0.5 - 8.2, y + 0.5 - 8.1) <= 4;
+            const bool wall = std::abs(x + 0.5 - 18.1) <= 2 && std::abs(y + 0.5 - 8.2) <= 3;
+            const float* a = white.at(x, y);
+            const float* b = tinted.at(x, y);
+            if (lamp || wall) {
+                ++solid;
+                for (int c = 0; c < 3; ++c) {
+                    EXPECT_EQ(a[c], lamp ? float(2 + c) : 0.0f);
+                    EXPECT_EQ(b[c], a[c]) << "the floor's albedo is not the shape's";
+                }
+            } else {
+                EXPECT_FLOAT_EQ(b[0], 0.5f * a[0]);
+                EXPECT_FLOAT_EQ(b[1], 0.25f * a[1]);
+                EXPECT_EQ(b[2], 0);
+            }
+        }
+    EXPECT_GT(solid, 60);
+}
+
+TEST(Linear, IsNeverAntialiased) {
+    Scene scene = with(canvas(24, 16), {shape(Circle{{8.2, 8.1}, 4}, {2, 3, 4})});
+    scene.output.antialias = true;
+    const ImageF with_antialias = render_linear(scene);
+    scene.output.antialias = false;
+    EXPECT_EQ(difference(with_antialias, render_linear(scene)).max, 0);
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 24; ++x)
+            if (std::hypot(x + 0.5 - 8.2, y + 0.5 - 8.1) > 4) {
+                EXPECT_LT(with_antialias.at(x, y)[0], 1.6f) << "a free pixel holds some of the lamp's emission";
+            }
+}
+
+TEST(Picture, TheFirstRowIsTheTop) {
+    // One lamp at the top left; the brightest pixel must be there, in both formats.
+    Scene scene = with(canvas(30, 20), {shape(Circle{{2.6, 1.7}, 1.6}, Colour(1))});
+    const ImageF linear = render_linear(scene);
+    EXPECT_EQ(linear.at(2, 1)[0], 1);
+    EXPECT_LT(linear.at(2, 18)[0], 0.2f);
+    EXPECT_LT(linear.at(27, 1)[0], 0.2f);
+    const Image8 display = render_display(scene);
+    EXPECT_EQ(display.at(2, 1)[0], 255);
+    EXPECT_LT(display.at(2, 18)[0], 128);
+    EXPECT_LT(display.at(27, 1)[0], 128);
+}
+
+TEST(Edges, AreMixedByCoverage) {
+    // A dim red half plane under a green sky; its edge runs at x = 10 + f.
+    for (const double f : {0.1, 0.3, 0.7, 0.9}) {
+        Scene scene = with(canvas(20, 9), {shape(Rect{{-90 + f, 4.5}, {200, 400}, 0, 0}, {0.25, 0, 0})});
+        scene.sky.radiance = {0, 1, 0};
+        const Image8 smooth = render_display(scene);
+        const ImageF linear = render_linear(scene);
+        EXPECT_GT(linear.at(11, 4)[1], 0.3f);
+        EXPECT_EQ(smooth.at(9, 4)[0], srgb_encode(0.25));
+        EXPECT_EQ(smooth.at(9, 4)[1], 0);
+        // The floor's share: of the pixel itself where its centre is free, else of its free neighbours.
+        const float* floor = linear.at(f < 0.5 ? 10 : 11, 4);
+        const std::uint8_t* edge = smooth.at(10, 4);
+        EXPECT_NEAR(edge[0], srgb_encode(0.25 * f + double(floor[0]) * (1 - f)), 1) << f;
+        EXPECT_NEAR(edge[1], srgb_encode(double(floor[1]) * (1 - f)), 1) << f;
+        scene.output.antialias = false;
+        const Image8 hard = render_display(scene);
+        EXPECT_EQ(hard.at(10, 4)[0], f < 0.5 ? srgb_encode(double(floor[0])) : srgb_encode(0.25)) << f;
+        EXPECT_EQ(hard.at(10, 4)[1], f < 0.5 ? srgb_encode(double(floor[1])) : 0) << f;
+    }
+}
+
+TEST(Edges, NothingDarkRoundABlackDiscAndNothingBrightFromInside) {
+    // Under a uniform sky, a free pixel beside a convex black shape sees at least half the sky. Four directions a pixel
+    // that merge sixteen: rays near the tangent may be taken for hits, a few in a hundred.
+    for (const Quality quality : {Quality::draft, Quality::standard, Quality::high}) {
+        const Circle disc{{24.3, 20.2}, 9.4};
+        Scene black = with(canvas(48, 40), {shape(disc)});
+        black.sky.radiance = Colour(1);
+        black.render.quality = quality;
+        const ImageF dark = render_linear(black);
+        // A black sky and a lit disc: beside it half of all directions are lit, never more.
+        Scene lamp = with(canvas(48, 40), {shape(disc, Colour(1))});
+        lamp.render.quality = quality;
+        const ImageF lit = render_linear(lamp);
+        double darkest = 1;
+        double brightest = 0;
+        for (int y = 0; y < 40; ++y)
+            for (int x = 0; x < 48; ++x) {
+                const double d = std::hypot(x + 0.5 - disc.center.x, y + 0.5 - disc.center.y) - disc.radius;
+                if (d <= 0) continue;
+                darkest = std::min(darkest, double(dark.at(x, y)[0]));
+                brightest = std::max(brightest, double(lit.at(x, y)[0]));
+            }
+        RecordProperty("darkest_" + std::to_string(int(quality)), std::to_string(darkest));
+        RecordProperty("brightest_" + std::to_string(int(quality)), std::to_string(brightest));
+        std::printf("quality %d: beside a black disc at least %.4f of the sky, beside a lamp at most %.4f of it\n", int(quality), darkest, brightest);
+        EXPECT_GE(darkest, 0.45);
+        EXPECT_LE(brightest, 0.55);
+    }
+}
+
+}  // namespace
+}  // namespace penumbra::test

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// What GLSL and C++ share lies where both think it lies.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/device_error.h"
+#include "core/gl/program.h"
+#include "glsl/cascade.h"
+#include "glsl/compose.h"
+#include "glsl/distance.h"
+#include "glsl/jump.h"
+#include "glsl/loop_probe.h"
+#include "glsl/reference.h"
+#include "glsl/resolve.h"
+#include "tests/gpu/shared_context.h"
+
+namespace penumbra::test {
+namespace {
+
+using Offsets = std::map<std::string, std::size_t>;
+
+// A program, its parameters field by field, and its group.
+struct Layout {
+    const char* shader;
+    std::size_t bytes;
+    Offsets fields;
+    int group_x, group_y;
+};
+
+#define FIELD(Type, name) {#name, offsetof(glsl::Type, name)}
+
+Offsets jump_fields() {
+    return {FIELD(JumpParams, origin), FIELD(JumpParams, extent), FIELD(JumpParams, step),
+            FIELD(JumpParams, pad0),   FIELD(JumpParams, pad1),   FIELD(JumpParams, pad2)};
+}
+
+Offsets compose_fields() {
+    return {FIELD(ComposeParams, origin),       FIELD(ComposeParams, extent),
+            FIELD(ComposeParams, border),       FIELD(ComposeParams, antialias),
+            FIELD(ComposeParams, tonemap),      FIELD(ComposeParams, floor_albedo),
+            FIELD(ComposeParams, exposure),     FIELD(ComposeParams, radiance_scale),
+            FIELD(ComposeParams, white),        FIELD(ComposeParams, has_shapes),
+            FIELD(ComposeParams, first_row),    FIELD(ComposeParams, pad0),
+            FIELD(ComposeParams, pad1),         FIELD(ComposeParams, pad2)};
+}
+
+std::vector<Layout> layouts() {
+    return {
+        {"distance.comp", sizeof(glsl::DistanceParams),
+         {FIELD(DistanceParams, origin), FIELD(DistanceParams, extent), FIELD(DistanceParams, border),
+          FIELD(DistanceParams, first_shape), FIELD(DistanceParams, end_shape), FIELD(DistanceParams, continues),
+          FIELD(DistanceParams, far_px), FIELD(DistanceParams, pad0), FIELD(DistanceParams, pad1)},
+         glsl::kDistanceGroupX, glsl::kDistanceGroupY},
+        {"jump_seed.comp", sizeof(glsl::JumpParams), jump_fields(), glsl::kJumpGroupX, glsl::kJumpGroupY},
+        {"jump_flood.comp", sizeof(glsl::JumpParams), jump_fields(), glsl::kJumpGroupX, glsl::kJumpGroupY},
+        {"jump_merge.comp", sizeof(glsl::JumpParams), jump_fields(), glsl::kJumpGroupX, glsl::kJumpGroupY},
+        {"cascade.comp", sizeof(glsl::CascadeParams),
+         {FIELD(CascadeParams, origin), FIELD(CascadeParams, extent), FIELD(CascadeParams, probes),
+          FIELD(CascadeParams, upper_probes), FIELD(CascadeParams, border), FIELD(CascadeParams, tiles),
+          FIELD(CascadeParams, upper_tiles), FIELD(CascadeParams, upper_texel), FIELD(CascadeParams, first_probe),
+          FIELD(CascadeParams, upper_first), FIELD(CascadeParams, domain), FIELD(CascadeParams, offset_cos),
+          FIELD(CascadeParams, offset_sin), FIELD(CascadeParams, sky), FIELD(CascadeParams, spacing),
+          FIELD(CascadeParams, upper_spacing), FIELD(CascadeParams, start), FIELD(CascadeParams, end),
+          FIELD(CascadeParams, group_angle), FIELD(CascadeParams, is_last), FIELD(CascadeParams, sky_first),
+          FIELD(CascadeParams, pad0)},
+         glsl::kCascadeGroupX, glsl::kCascadeGroupY},
+        {"resolve.comp", sizeof(glsl::ResolveParams),
+         {FIELD(ResolveParams, origin), FIELD(ResolveParams, extent), FIELD(ResolveParams, probes),
+          FIELD(ResolveParams, tiles), FIELD(ResolveParams, texel), FIELD(ResolveParams, first_probe),
+          FIELD(ResolveParams, spacing), FIELD(ResolveParams, pad0), FIELD(ResolveParams, pad1),
+          FIELD(ResolveParams, pad2)},
+         glsl::kResolveGroupX, glsl::kResolveGroupY},
+        {"reference.comp", sizeof(glsl::ReferenceParams),
+         {FIELD(ReferenceParams, origin), FIELD(ReferenceParams, extent), FIELD(ReferenceParams, border),
+          FIELD(ReferenceParams, shape_count), FIELD(ReferenceParams, ray_count), FIELD(ReferenceParams, first_ray),
+          FIELD(ReferenceParams, end_ray), FIELD(ReferenceParams, sky_first), FIELD(ReferenceParams, is_last),
+          FIELD(ReferenceParams, domain), FIELD(ReferenceParams, sky)},
+         glsl::kReferenceGroupX, glsl::kReferenceGroupY},
+        {"compose.comp", sizeof(glsl::ComposeParams), compose_fields(), glsl::kComposeGroupX, glsl::kComposeGroupY},
+        {"linear.comp", sizeof(glsl::ComposeParams), compose_fields(), glsl::kComposeGroupX, glsl::kComposeGroupY},
+        {"loop_probe.comp", sizeof(glsl::LoopProbeParams),
+         {FIELD(LoopProbeParams, origin), FIELD(LoopProbeParams, iterations), FIELD(LoopProbeParams, pad0)},
+         8, 1},
+    };
+}
+
+// What the driver says of the members of the parameter block.
+Offsets reflected(GLuint program) {
+    Offsets result;
+    GLint count = 0;
+    glGetProgramInterfaceiv(program, GL_UNIFORM, GL_ACTIVE_RESOURCES, &count);
+    for (GLint i = 0; i < count; ++i) {
+        const GLenum wanted[] = {GL_BLOCK_INDEX, GL_OFFSET};
+        GLint values[2] = {-1, -1};
+        glGetProgramResourceiv(program, GL_UNIFORM, static_cast<GLuint>(i), 2, wanted, 2, nullptr, values);
+        if (values[0] < 0) continue;
+        char name[128] = {};
+        glGetProgramResourceName(program, GL_UNIFORM, static_cast<GLuint>(i), sizeof name, nullptr, name);
+        const std::string full = name;
+        result[full.substr(full.rfind('.') + 1)] = static_cast<std::size_t>(values[1]);
+    }
+    return result;
+}
+
+TEST(Layout, EveryFieldLiesAtTheSameOffsetInGlslAndCpp) {
+    shared_context();
+    for (const Layout& layout : layouts()) {
+        const gl::ComputeProgram program(layout.shader, layout.bytes, shader_dir());
+        EXPECT_EQ(reflected(program.id()), layout.fields) << layout.shader;
+    }
+}
+
+TEST(Layout, GroupSizesAreTheHeaders) {
+    const gl::Context& context = shared_context();
+    for (const Layout& layout : layouts()) {
+        const gl::ComputeProgram program(layout.shader, layout.bytes, shader_dir());
+        GLint group[3] = {};
+        glGetProgramiv(program.id(), GL_COMPUTE_WORK_GROUP_SIZE, group);
+        EXPECT_EQ(group[0], layout.group_x) << layout.shader;
+        EXPECT_EQ(group[1], layout.group_y) << layout.shader;
+        EXPECT_EQ(group[2], 1) << layout.shader;
+        EXPECT_LE(group[0] * group[1], context.info().max_group_invocations);
+    }
+}
+
+TEST(Layout, ParametersOfAnotherSizeAreRefused) {
+    shared_context();
+    try {
+        const gl::ComputeProgram program("distance.comp", sizeof(glsl::DistanceParams) + 16, shader_dir());
+        FAIL() << "built with parameters of the wrong size";
+    } catch (const DeviceError& error) {
+        const std::string what = error.what();
+        EXPECT_NE(what.find("distance.comp"), std::string::npos) << what;
+        EXPECT_NE(what.find(std::to_string(sizeof(glsl::DistanceParams))), std::string::npos) << what;
+        EXPECT_NE(what.find(std::to_string(sizeof(glsl::DistanceParams) + 16)), std::string::npos) << what;
+    }
+}
+
+}  // namespace
+}  // namespace penumbra::test
