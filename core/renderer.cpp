@@ -236,7 +236,14 @@ RenderResult Renderer::Impl::render(const Scene& scene) {
 
 Renderer::Renderer(const RendererOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 
-Renderer::~Renderer() = default;
+Renderer::~Renderer() {
+    // Its objects live in its own context, whichever is current.
+    try {
+        impl_->context.make_current();
+    } catch (const DeviceError&) {
+        // They go with the context.
+    }
+}
 
 const DeviceInfo& Renderer::device() const { return impl_->info; }
 

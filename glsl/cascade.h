@@ -15,7 +15,8 @@ const int kCascadeUpperUnit = 6;     // rgba, linear filter, the cascade above
 
 // Loop iterations of one invocation, its four rays and all inner loops together: under the 65535 after which
 // Mesa 22 ends every loop. A ray that finds them spent is blocked, never free (errata E-5).
-const int kMarchBudget = 60000;
+// It is half of that, because the eight invocations of a vector wait for each other's loops.
+const int kMarchBudget = 32000;
 // Outlines of more edges than this are not asked during a march; the distance is interpolated instead.
 const int kMostMarchedEdges = 24;
 

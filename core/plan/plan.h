@@ -51,7 +51,7 @@ struct ShapeSlice {
 struct ReferencePlan {
     int rays = 0;  // 0: not this method
     int rays_per_dispatch = 0;
-    std::size_t tests_per_ray = 1;  // shapes, edges and bitmap texels along a ray
+    std::size_t tests_per_ray = 1;  // loop iterations of one ray, at most
 };
 
 struct Plan {
