@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// Error figures of every method and quality against the exact solver, under the bounds of bounds.json. A change that
+// makes a figure fall should lower its bound; none may raise one without a page in docs/decisions.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "core/compare/error_figures.h"
+#include "core/reference/solver.h"
+#include "core/renderer.h"
+#include "server/json/scene_json.h"
+
+namespace penumbra {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kSide = 96;  // pixels: a scene of 512 world units, seen small
+
+std::string read(const std::string& path) {
+    std::ifstream file(path);
+    std::stringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+const json& bounds() {
+    static const json kBounds = json::parse(read(PENUMBRA_SOURCE_DIR "/tests/accuracy/bounds.json"));
+    return kBounds;
+}
+
+Scene load(const std::string& name, const std::string& method, const std::string& quality) {
+    const std::string side = std::to_string(kSide);
+    ParsedScene parsed = parse_scene(read(PENUMBRA_SOURCE_DIR "/examples/scenes/" + name + ".json"), {}, {},
+                                     {{"/canvas/view", "[0, 0, 512, 512]"}, {"/canvas/width", side}, {"/canvas/height", side},
+                                      {"/render/method", method}, {"/render/quality", quality}, {"/output/format", "pfm"}});
+    if (!parsed.scene) throw std::runtime_error(to_string(parsed.problems.front()));
+    return *parsed.scene;
+}
+
+const ImageF& truth(const std::string& name) {
+    static std::map<std::string, ImageF> solved;
+    auto found = solved.find(name);
+    if (found == solved.end()) found = solved.emplace(name, reference::solve(load(name, "rc", "draft")).image).first;
+    return found->second;
+}
+
+ErrorFigures measure(Renderer& renderer, const std::string& scene, const std::string& method, const std::string& quality) {
+    const RenderResult result = renderer.render(load(scene, method, quality));
+    return std::get<ErrorFigures>(error_figures(std::get<ImageF>(result.picture), truth(scene)));
+}
+
+Renderer& renderer() {
+    static Renderer instance;
+    return instance;
+}
+
+struct Case {
+    std::string scene, method, quality;
+    json bound;
+};
+
+std::vector<Case> cases() {
+    std::vector<Case> result;
+    for (const auto& [scene, methods] : bounds().items())
+        for (const auto& [method, qualities] : methods.items())
+            for (const auto& [quality, bound] : qualities.items()) result.push_back({scene, method, quality, bound});
+    return result;
+}
+
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.scene << " " << c.method << " " << c.quality; }
+
+class Accuracy : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Accuracy, StaysUnderItsBound) {
+    const Case& c = GetParam();
+    const ErrorFigures e = measure(renderer(), c.scene, c.method, c.quality);
+    std::printf("\"%s\" %s %s: {\"rel\": %.4f, \"nrmse\": %.4f, \"bias\": %.4f, \"leak\": %.5f}\n", c.scene.c_str(),
+                c.method.c_str(), c.quality.c_str(), *e.rel, *e.nrmse, *e.bias, e.leak.value_or(0));
+    EXPECT_EQ(e.nan_only_a, 0u);
+    EXPECT_LE(*e.rel, c.bound.at("rel").get<double>());
+    EXPECT_LE(*e.nrmse, c.bound.at("nrmse").get<double>());
+    EXPECT_LE(std::abs(*e.bias), c.bound.at("bias").get<double>());
+    EXPECT_LE(e.leak.value_or(0), c.bound.at("leak").get<double>());
+}
+
+INSTANTIATE_TEST_SUITE_P(Bounds, Accuracy, ::testing::ValuesIn(cases()),
+                         [](const auto& c) { return c.param.scene + "_" + c.param.method + "_" + c.param.quality; });
+
+// The bounds can fail: the seed's wrong divisor (errata E-8) and an upper cascade that is half a probe off are caught.
+class BrokenShader : public ::testing::Test {
+protected:
+    void expect_caught(const std::string& file, const std::string& from, const std::string& to) {
+        const std::string folder = ::testing::TempDir() + "/penumbra_broken_glsl";
+        std::filesystem::remove_all(folder);
+        std::filesystem::copy(PENUMBRA_SOURCE_DIR "/glsl", folder, std::filesystem::copy_options::recursive);
+        std::string text = read(folder + "/" + file);
+        const auto at = text.find(from);
+        ASSERT_NE(at, std::string::npos) << file << " no longer says " << from;
+        std::ofstream(folder + "/" + file) << text.replace(at, from.size(), to);
+        Renderer broken({.device = "auto", .shader_dir = folder});
+        const ErrorFigures e = measure(broken, "penumbra", "rc", "standard");
+        const json& bound = bounds().at("penumbra").at("rc").at("standard");
+        std::printf("broken %s: rel %.4f (bound %.4f), bias %.4f (bound %.4f)\n", file.c_str(), *e.rel, bound.at("rel").get<double>(),
+                    *e.bias, bound.at("bias").get<double>());
+        EXPECT_TRUE(*e.rel > bound.at("rel").get<double>() || std::abs(*e.bias) > bound.at("bias").get<double>());
+        std::filesystem::remove_all(folder);
+    }
+};
+
+TEST_F(BrokenShader, WrongDivisorIsCaught) { expect_caught("cascade.comp", "vec4(0.25 * sum, 1.0)", "vec4(0.5 * sum, 1.0)"); }
+
+TEST_F(BrokenShader, HalfAProbeOffIsCaught) {
+    expect_caught("cascade.comp", "/ params.upper_spacing + 0.5;", "/ params.upper_spacing;");
+}
+
+}  // namespace
+}  // namespace penumbra
