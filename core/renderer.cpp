@@ -24,6 +24,9 @@
 namespace penumbra {
 namespace {
 
+// Two renders of 4096 x 4096.
+constexpr std::size_t kPoolBytes = std::size_t(1) << 30;
+
 using Clock = std::chrono::steady_clock;
 
 double ms_since(Clock::time_point start) {
@@ -145,7 +148,7 @@ struct Renderer::Impl {
         if (!gl_info.software) limits.max_texture_bytes = std::size_t(8) << 30;
         // About 10 ms a dispatch on two cores of llvmpipe; a GPU takes a hundred times that.
         const std::size_t factor = gl_info.software ? 1 : 128;
-        slicing = {factor * 6'000'000, factor * 300'000, factor * 1'000'000};
+        settings = {factor * 6'000'000, factor * 300'000, factor * 1'000'000, &textures};
     }
 
     RenderResult render(const Scene& scene);
@@ -157,6 +160,7 @@ struct Renderer::Impl {
     std::thread::id thread = std::this_thread::get_id();
     gl::Context context;
     gl::PassTimer timer;
+    gl::TexturePool textures{kPoolBytes};
     DistancePass distance;
     JumpFloodPass jump_flood;
     CascadePass cascade;
@@ -165,7 +169,7 @@ struct Renderer::Impl {
     ComposePass compose;
     DeviceInfo info;
     DeviceLimits limits;
-    Slicing slicing;
+    PassSettings settings;
 };
 
 // The frame, in the order in which it happens.
@@ -181,25 +185,27 @@ RenderResult Renderer::Impl::render(const Scene& scene) {
     if (plan.shape_slices.empty())
         field = DistancePass::empty_field(plan);
     else
-        record.pass("distance", plan.grid.size, [&] { return distance.run(plan, slicing, field); });
+        record.pass("distance", plan.grid.size, [&] { return distance.run(plan, settings, field); });
     if (!plan.jump_steps.empty())
-        record.pass("jump flood", plan.grid.size, [&] { return jump_flood.run(plan, slicing, field); });
+        record.pass("jump flood", plan.grid.size, [&] { return jump_flood.run(plan, settings, field); });
 
     gl::Texture2D radiance;
     for (std::size_t level = plan.cascades.size(); level-- > 0;) {
         gl::Texture2D merged;
         record.pass("cascade " + std::to_string(level), plan.cascades[level].texture, [&] {
-            return cascade.run(plan, level, scene.sky, buffers, field, radiance ? &radiance : nullptr, slicing, merged);
+            return cascade.run(plan, level, scene.sky, buffers, field, radiance ? &radiance : nullptr, settings, merged);
         });
+        settings.give(std::move(radiance));
         radiance = std::move(merged);
     }
     if (plan.reference.rays > 0)
         record.pass("reference", plan.canvas,
-                    [&] { return reference.run(plan, scene.sky, buffers, field, slicing, radiance); });
+                    [&] { return reference.run(plan, scene.sky, buffers, field, settings, radiance); });
     if (plan.resolve)
         record.pass("resolve", plan.canvas, [&] {
             gl::Texture2D resolved;
-            const PassWork work = resolve.run(plan, radiance, slicing, resolved);
+            const PassWork work = resolve.run(plan, radiance, settings, resolved);
+            settings.give(std::move(radiance));
             radiance = std::move(resolved);
             return work;
         });
@@ -214,12 +220,17 @@ RenderResult Renderer::Impl::render(const Scene& scene) {
     Reader reader(plan.canvas, linear);
     for (int row = 0; row < plan.canvas.y; row += plan.band_rows) {
         const int rows = std::min(plan.band_rows, plan.canvas.y - row);
-        gl::Texture2D band(linear ? GL_RGBA32F : GL_RGBA8, {plan.canvas.x, rows});
+        gl::Texture2D band = settings.take(linear ? GL_RGBA32F : GL_RGBA8, {plan.canvas.x, rows});
         record.pass("compose", {plan.canvas.x, rows},
-                    [&] { return compose.run(plan, scene, linear, radiance, field, slicing, row, band); });
+                    [&] { return compose.run(plan, scene, linear, radiance, field, settings, row, band); });
         record.host("read", {plan.canvas.x, rows}, [&] { reader.read(band, row); });
+        settings.give(std::move(band));
     }
     result.picture = reader.take();
+    context.check_reset();
+    settings.give(std::move(field.distance));
+    settings.give(std::move(field.material));
+    settings.give(std::move(radiance));
 
     RenderStats& stats = result.stats;
     stats.passes = record.finish();

@@ -87,9 +87,14 @@ public:
             if (eglChooseConfig(display_, wanted, &config, 1, &count) != EGL_TRUE || count == 0)
                 throw DeviceError("the display has no OpenGL configuration");
         }
-        const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 3,
-                                  EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
-        context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, version);
+        // Told of resets where the driver can: without, a lost context answers every call with silence and garbage.
+        const EGLint robust[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 3,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE};
+        const EGLint plain[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 3,
+                                EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+        context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, robust);
+        if (context_ == EGL_NO_CONTEXT) context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, plain);
         if (context_ == EGL_NO_CONTEXT) throw DeviceError("no OpenGL 4.3 core context (" + egl_error() + ")");
         if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE) {
             const std::string why = egl_error();
@@ -213,11 +218,27 @@ Context::Context(const std::string& choice) {
     info_.gl_version = text(GL_VERSION);
     info_.glsl_version = text(GL_SHADING_LANGUAGE_VERSION);
     info_.software = is_software_renderer(info_.renderer);
+    GLint extensions = 0;
+    glGetIntegerv(GL_NUM_EXTENSIONS, &extensions);
+    for (GLint i = 0; i < extensions; ++i) {
+        const char* name = reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
+        if (name == nullptr) continue;
+        if (std::strcmp(name, "GL_KHR_robustness") == 0) {
+            get_reset_status_ = load("glGetGraphicsResetStatus");
+            break;
+        }
+        if (std::strcmp(name, "GL_ARB_robustness") == 0) get_reset_status_ = load("glGetGraphicsResetStatusARB");
+    }
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &info_.max_texture_side);
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &info_.max_texture_buffer_texels);
     glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &info_.max_group_invocations);
 }
 
 Context::~Context() = default;
+
+void Context::check_reset() const {
+    if (get_reset_status_ != nullptr && reinterpret_cast<GLenum (*)()>(get_reset_status_)() != GL_NO_ERROR)
+        throw DeviceError("The device was reset while it rendered; its context is lost.");
+}
 
 }  // namespace penumbra::gl

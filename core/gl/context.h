@@ -38,6 +38,9 @@ public:
     // Another context may have been made current on this thread since.
     void make_current() { backend_->make_current(); }
 
+    // Throws DeviceError when the driver has reset the context: everything in it is lost.
+    void check_reset() const;
+
     static std::vector<EglDeviceListing> list_devices();
 
     // What made the context; destroyed with it.
@@ -49,6 +52,7 @@ public:
 private:
     std::unique_ptr<Backend> backend_;
     ContextInfo info_;
+    void (*get_reset_status_)() = nullptr;  // where the driver can tell
 };
 
 }  // namespace penumbra::gl

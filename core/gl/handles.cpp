@@ -42,7 +42,7 @@ void check_errors(const char* where) {
 }
 
 Texture2D::Texture2D(GLenum internal_format, glm::ivec2 size, Filter filter)
-    : format_(internal_format), size_(size) {
+    : format_(internal_format), size_(size), filter_(filter) {
     glGenTextures(1, &id_);
     glBindTexture(GL_TEXTURE_2D, id_);
     glTexStorage2D(GL_TEXTURE_2D, 1, internal_format, size.x, size.y);

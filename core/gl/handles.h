@@ -36,11 +36,18 @@ public:
     // Immutable storage of one level, clamped to its edge. Throws DeviceError when there is no memory.
     Texture2D(GLenum internal_format, glm::ivec2 size, Filter filter = Filter::nearest);
     Texture2D(Texture2D&&) noexcept = default;
-    Texture2D& operator=(Texture2D&&) noexcept = default;
+    Texture2D& operator=(Texture2D&& other) noexcept {
+        Handle::operator=(std::move(other));
+        std::swap(format_, other.format_);
+        std::swap(size_, other.size_);
+        std::swap(filter_, other.filter_);
+        return *this;
+    }
     ~Texture2D();
 
     GLenum format() const { return format_; }
     glm::ivec2 size() const { return size_; }
+    Filter filter() const { return filter_; }
     std::size_t bytes() const;
 
     void bind_texture(int unit) const;
@@ -52,6 +59,7 @@ public:
 private:
     GLenum format_ = 0;
     glm::ivec2 size_{0};
+    Filter filter_ = Filter::nearest;
 };
 
 // Immutable contents seen by shaders through a buffer texture: what scene data is read through, since

@@ -12,10 +12,10 @@ CascadePass::CascadePass(const std::string& shader_dir)
     : program_("cascade.comp", sizeof(glsl::CascadeParams), shader_dir) {}
 
 PassWork CascadePass::run(const Plan& plan, std::size_t level, const Sky& sky, const SceneBuffers& scene,
-                          const DistanceField& field, const gl::Texture2D* upper, const Slicing& slicing,
+                          const DistanceField& field, const gl::Texture2D* upper, const PassSettings& settings,
                           gl::Texture2D& out) {
     const CascadePlan& c = plan.cascades[level];
-    out = gl::Texture2D(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, c.texture, gl::Filter::linear);
+    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, c.texture, gl::Filter::linear);
 
     glsl::CascadeParams params{};
     params.extent = c.texture;
@@ -55,7 +55,7 @@ PassWork CascadePass::run(const Plan& plan, std::size_t level, const Sky& sky, c
     out.bind_image(glsl::kCascadeImageBinding, GL_WRITE_ONLY);
 
     PassWork work;
-    work.dispatches = program_.dispatch(params, c.texture, slicing.rays / 4);
+    work.dispatches = program_.dispatch(params, c.texture, settings.rays / 4);
     work.rays = 4 * static_cast<std::size_t>(c.texture.x) * static_cast<std::size_t>(c.texture.y);
     work.bytes = out.bytes();
     return work;

@@ -16,7 +16,7 @@ class CascadePass {
 public:
     explicit CascadePass(const std::string& shader_dir);
     PassWork run(const Plan& plan, std::size_t level, const Sky& sky, const SceneBuffers& scene,
-                 const DistanceField& field, const gl::Texture2D* upper, const Slicing& slicing, gl::Texture2D& out);
+                 const DistanceField& field, const gl::Texture2D* upper, const PassSettings& settings, gl::Texture2D& out);
 
 private:
     gl::ComputeProgram program_;

@@ -27,7 +27,7 @@ ComposePass::ComposePass(const std::string& shader_dir)
       linear_("linear.comp", sizeof(glsl::ComposeParams), shader_dir) {}
 
 PassWork ComposePass::run(const Plan& plan, const Scene& scene, bool linear, const gl::Texture2D& radiance,
-                          const DistanceField& field, const Slicing& slicing, int first_row, gl::Texture2D& out) {
+                          const DistanceField& field, const PassSettings& settings, int first_row, gl::Texture2D& out) {
     glsl::ComposeParams params{};
     params.extent = plan.canvas;
     params.border = plan.grid.border;
@@ -44,7 +44,7 @@ PassWork ComposePass::run(const Plan& plan, const Scene& scene, bool linear, con
     field.material.bind_texture(glsl::kComposeMaterialUnit);
     out.bind_image(glsl::kComposeImageBinding, GL_WRITE_ONLY);
     PassWork work;
-    work.dispatches = (linear ? linear_ : display_).dispatch(params, out.size(), slicing.pixels);
+    work.dispatches = (linear ? linear_ : display_).dispatch(params, out.size(), settings.pixels);
     work.bytes = out.bytes();
     return work;
 }

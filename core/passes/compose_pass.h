@@ -17,7 +17,7 @@ public:
     explicit ComposePass(const std::string& shader_dir);
     // Rows `first_row` and on, as many as `out` has.
     PassWork run(const Plan& plan, const Scene& scene, bool linear, const gl::Texture2D& radiance,
-                 const DistanceField& field, const Slicing& slicing, int first_row, gl::Texture2D& out);
+                 const DistanceField& field, const PassSettings& settings, int first_row, gl::Texture2D& out);
 
 private:
     gl::ComputeProgram display_;

@@ -8,9 +8,9 @@ namespace penumbra {
 DistancePass::DistancePass(const std::string& shader_dir)
     : program_("distance.comp", sizeof(glsl::DistanceParams), shader_dir) {}
 
-PassWork DistancePass::run(const Plan& plan, const Slicing& slicing, DistanceField& out) {
-    out.distance = gl::Texture2D(GL_R32F, plan.grid.size);
-    out.material = gl::Texture2D(GL_R32I, plan.grid.size);
+PassWork DistancePass::run(const Plan& plan, const PassSettings& settings, DistanceField& out) {
+    out.distance = settings.take(GL_R32F, plan.grid.size);
+    out.material = settings.take(GL_R32I, plan.grid.size);
     out.distance.bind_image(glsl::kDistanceImageBinding, GL_READ_WRITE);
     out.material.bind_image(glsl::kMaterialImageBinding, GL_READ_WRITE);
     PassWork work;
@@ -22,7 +22,7 @@ PassWork DistancePass::run(const Plan& plan, const Slicing& slicing, DistanceFie
         params.first_shape = slice.first;
         params.end_shape = slice.end;
         const auto shapes = static_cast<std::size_t>(slice.end - slice.first);
-        work.dispatches += program_.dispatch(params, plan.grid.size, slicing.distance_iterations / shapes);
+        work.dispatches += program_.dispatch(params, plan.grid.size, settings.distance_iterations / shapes);
         params.continues = 1;
     }
     work.bytes = plan.shape_slices.size() * (out.distance.bytes() + out.material.bytes());

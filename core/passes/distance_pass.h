@@ -13,7 +13,7 @@ namespace penumbra {
 class DistancePass {
 public:
     explicit DistancePass(const std::string& shader_dir);
-    PassWork run(const Plan& plan, const Slicing& slicing, DistanceField& out);
+    PassWork run(const Plan& plan, const PassSettings& settings, DistanceField& out);
 
     // The field of a scene without shapes: one texel, as far as the diagonal.
     static DistanceField empty_field(const Plan& plan);

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 
 #include "core/gl/handles.h"
+#include "core/gl/texture_pool.h"
 
 namespace penumbra {
 
@@ -14,11 +16,20 @@ struct DistanceField {
     gl::Texture2D material;  // r32i, shape index or -1
 };
 
-// How much one dispatch may cover before the pass is cut into bands: about 10 ms on llvmpipe.
-struct Slicing {
+// What every pass of a frame shares: how much one dispatch may cover before the pass is cut into bands (0: all), and where
+// its textures come from.
+struct PassSettings {
     std::size_t distance_iterations = 0;  // pixels times shapes
     std::size_t rays = 0;
     std::size_t pixels = 0;
+    gl::TexturePool* textures = nullptr;  // none: made anew each time
+
+    gl::Texture2D take(GLenum format, glm::ivec2 size, gl::Filter filter = gl::Filter::nearest) const {
+        return textures != nullptr ? textures->take(format, size, filter) : gl::Texture2D(format, size, filter);
+    }
+    void give(gl::Texture2D texture) const {
+        if (textures != nullptr) textures->give(std::move(texture));
+    }
 };
 
 // What a pass reports of its run.

@@ -14,7 +14,7 @@ namespace penumbra {
 class JumpFloodPass {
 public:
     explicit JumpFloodPass(const std::string& shader_dir);
-    PassWork run(const Plan& plan, const Slicing& slicing, DistanceField& field);
+    PassWork run(const Plan& plan, const PassSettings& settings, DistanceField& field);
 
 private:
     gl::ComputeProgram seed_;

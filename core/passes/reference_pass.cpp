@@ -11,8 +11,8 @@ ReferencePass::ReferencePass(const std::string& shader_dir)
     : program_("reference.comp", sizeof(glsl::ReferenceParams), shader_dir) {}
 
 PassWork ReferencePass::run(const Plan& plan, const Sky& sky, const SceneBuffers& scene, const DistanceField& field,
-                            const Slicing& slicing, gl::Texture2D& out) {
-    out = gl::Texture2D(GL_RGBA32F, plan.canvas);
+                            const PassSettings& settings, gl::Texture2D& out) {
+    out = settings.take(GL_RGBA32F, plan.canvas);
     glsl::ReferenceParams params{};
     params.extent = plan.canvas;
     params.border = plan.grid.border;
@@ -31,7 +31,7 @@ PassWork ReferencePass::run(const Plan& plan, const Sky& sky, const SceneBuffers
         params.end_ray = std::min(ray + plan.reference.rays_per_dispatch, plan.reference.rays);
         params.is_last = params.end_ray == plan.reference.rays ? 1 : 0;
         const std::size_t cost = static_cast<std::size_t>(params.end_ray - ray) * plan.reference.tests_per_ray;
-        work.dispatches += program_.dispatch(params, plan.canvas, slicing.distance_iterations / std::max<std::size_t>(cost, 1));
+        work.dispatches += program_.dispatch(params, plan.canvas, settings.distance_iterations / std::max<std::size_t>(cost, 1));
     }
     work.rays = static_cast<std::size_t>(plan.reference.rays) * static_cast<std::size_t>(plan.canvas.x) *
                 static_cast<std::size_t>(plan.canvas.y);

@@ -16,7 +16,7 @@ class ReferencePass {
 public:
     explicit ReferencePass(const std::string& shader_dir);
     PassWork run(const Plan& plan, const Sky& sky, const SceneBuffers& scene, const DistanceField& field,
-                 const Slicing& slicing, gl::Texture2D& out);
+                 const PassSettings& settings, gl::Texture2D& out);
 
 private:
     gl::ComputeProgram program_;

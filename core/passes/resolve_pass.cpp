@@ -8,9 +8,9 @@ namespace penumbra {
 ResolvePass::ResolvePass(const std::string& shader_dir)
     : program_("resolve.comp", sizeof(glsl::ResolveParams), shader_dir) {}
 
-PassWork ResolvePass::run(const Plan& plan, const gl::Texture2D& cascade, const Slicing& slicing, gl::Texture2D& out) {
+PassWork ResolvePass::run(const Plan& plan, const gl::Texture2D& cascade, const PassSettings& settings, gl::Texture2D& out) {
     const CascadePlan& c = plan.cascades.front();
-    out = gl::Texture2D(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.canvas);
+    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.canvas);
     glsl::ResolveParams params{};
     params.extent = plan.canvas;
     params.probes = c.probes;
@@ -21,7 +21,7 @@ PassWork ResolvePass::run(const Plan& plan, const gl::Texture2D& cascade, const 
     cascade.bind_texture(glsl::kResolveCascadeUnit);
     out.bind_image(glsl::kResolveImageBinding, GL_WRITE_ONLY);
     PassWork work;
-    work.dispatches = program_.dispatch(params, plan.canvas, slicing.pixels);
+    work.dispatches = program_.dispatch(params, plan.canvas, settings.pixels);
     work.bytes = out.bytes();
     return work;
 }

@@ -13,7 +13,7 @@ namespace penumbra {
 class ResolvePass {
 public:
     explicit ResolvePass(const std::string& shader_dir);
-    PassWork run(const Plan& plan, const gl::Texture2D& cascade, const Slicing& slicing, gl::Texture2D& out);
+    PassWork run(const Plan& plan, const gl::Texture2D& cascade, const PassSettings& settings, gl::Texture2D& out);
 
 private:
     gl::ComputeProgram program_;

@@ -47,11 +47,12 @@ ReferencePlan plan_reference(const Scene& scene, const DeviceLimits& limits) {
     ReferencePlan plan;
     plan.rays = reference_rays(scene.render.quality);
     plan.tests_per_ray = tests_per_ray(scene.shapes);
-    // Half, since a loop's last test may count as well.
-    const std::size_t most = limits.max_loop_iterations == 0 ? std::size_t(1) << 24
-                                                             : static_cast<std::size_t>(limits.max_loop_iterations) / 2;
+    // Half of what Mesa 22 allows an invocation, since a loop's last test may count as well. Where no limit was found it
+    // holds too: an invocation that runs for seconds costs a GPU its context.
+    constexpr std::size_t kMost = 65535 / 2;
+    const std::size_t most = limits.max_loop_iterations == 0 ? kMost : std::min(kMost, static_cast<std::size_t>(limits.max_loop_iterations) / 2);
     const std::size_t cost = 1 + plan.tests_per_ray;
-    if (cost > most)
+    if (limits.max_loop_iterations != 0 && cost > most)
         throw DeviceError("The scene has too many edges for the method 'reference' on this device: a ray makes up to " +
                           std::to_string(plan.tests_per_ray) + " tests, and its loops end after " +
                           std::to_string(limits.max_loop_iterations) + " iterations.");

@@ -37,7 +37,7 @@ struct Frame {
     Texels4 pixels;  // resolved, or cascade 0
 };
 
-Frame run_frame(const Scene& scene, const Plan& plan, const Slicing& slicing = kOneSlice) {
+Frame run_frame(const Scene& scene, const Plan& plan, const PassSettings& settings = kOneSlice) {
     shared_context();
     const SceneBuffers buffers(pack_scene(scene, 1), scene.sky, plan);
     buffers.bind();
@@ -46,20 +46,20 @@ Frame run_frame(const Scene& scene, const Plan& plan, const Slicing& slicing = k
     ResolvePass resolve(shader_dir());
     DistanceField field;
     if (plan.shape_slices.empty()) field = DistancePass::empty_field(plan);
-    else distance.run(plan, slicing, field);
+    else distance.run(plan, settings, field);
     Frame frame;
     frame.cascades.resize(plan.cascades.size());
     gl::Texture2D above;
     for (std::size_t level = plan.cascades.size(); level-- > 0;) {
         gl::Texture2D out;
-        cascade.run(plan, level, scene.sky, buffers, field, above ? &above : nullptr, slicing, out);
+        cascade.run(plan, level, scene.sky, buffers, field, above ? &above : nullptr, settings, out);
         frame.cascades[level] = read(out);
         above = std::move(out);
     }
     frame.pixels = frame.cascades.front();
     if (plan.resolve) {
         gl::Texture2D out;
-        resolve.run(plan, above, slicing, out);
+        resolve.run(plan, above, settings, out);
         frame.pixels = read(out);
     }
     return frame;
@@ -164,7 +164,7 @@ TEST(Cascade, BandsChangeNothing) {
     Scene scene = lamp_and_walls(61, 43, Quality::high);
     const Plan plan = make_plan(scene, {});
     const Frame whole = run_frame(scene, plan);
-    const Frame bands = run_frame(scene, plan, Slicing{900, 1200, 300});
+    const Frame bands = run_frame(scene, plan, PassSettings{900, 1200, 300});
     ASSERT_EQ(whole.cascades.size(), bands.cascades.size());
     for (std::size_t level = 0; level < whole.cascades.size(); ++level)
         EXPECT_TRUE(whole.cascades[level].data == bands.cascades[level].data) << level;

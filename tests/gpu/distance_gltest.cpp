@@ -155,7 +155,7 @@ TEST(Distance, SlicesAndBandsChangeNothing) {
     ASSERT_EQ(plan.shape_slices.size(), 1u);
     const Field whole = run_distance(scene, plan);
     plan.shape_slices = {{0, 1}, {1, 22}, {22, 23}, {23, 60}};
-    const Field sliced = run_distance(scene, plan, Slicing{700, 0, 0});
+    const Field sliced = run_distance(scene, plan, PassSettings{700, 0, 0});
     EXPECT_EQ(whole.distance, sliced.distance);
     EXPECT_EQ(whole.material, sliced.material);
 }

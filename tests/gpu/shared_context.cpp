@@ -48,13 +48,13 @@ Field read_field(const DistanceField& field) {
     return result;
 }
 
-Field run_distance(const Scene& scene, const Plan& plan, const Slicing& slicing) {
+Field run_distance(const Scene& scene, const Plan& plan, const PassSettings& settings) {
     Shared& s = all();
     const SceneBuffers buffers(pack_scene(scene, 1), scene.sky, plan);
     buffers.bind();
     DistanceField field;
-    s.distance.run(plan, slicing, field);
-    if (!plan.jump_steps.empty()) s.jump_flood.run(plan, slicing, field);
+    s.distance.run(plan, settings, field);
+    if (!plan.jump_steps.empty()) s.jump_flood.run(plan, settings, field);
     return read_field(field);
 }
 

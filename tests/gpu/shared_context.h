@@ -20,7 +20,7 @@ gl::Context& shared_context();
 const std::string& shader_dir();
 
 // One dispatch for everything.
-inline constexpr Slicing kOneSlice{};
+inline constexpr PassSettings kOneSlice{};
 
 struct Field {
     glm::ivec2 size{0};
@@ -31,7 +31,7 @@ struct Field {
 Field read_field(const DistanceField& field);
 
 // Distance pass (and jump flooding, where the plan has it) of a scene.
-Field run_distance(const Scene& scene, const Plan& plan, const Slicing& slicing = kOneSlice);
+Field run_distance(const Scene& scene, const Plan& plan, const PassSettings& settings = kOneSlice);
 Field run_distance(const Scene& scene);
 
 }  // namespace penumbra::test
