@@ -2,6 +2,7 @@
 #include "server/cli/cli.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -30,6 +31,18 @@ int run_cli(int argc, char** argv, const Engine& engine, std::span<const AddComm
         complain(error.what());
         complain("try: penumbra --help");
         return kBadInput;
+    }
+    // A variable that its option refuses: CLI11 2.1 complains by itself, 2.4 passes over it in silence.
+    for (const CLI::App* command : app.get_subcommands()) {
+        for (const CLI::Option* option : command->get_options()) {
+            const std::string name = option->get_envname();
+            const char* value = name.empty() ? nullptr : std::getenv(name.c_str());
+            if (value != nullptr && *value != '\0' && option->count() == 0) {
+                complain(name + ": " + option->get_name() + " does not take '" + value + "'");
+                complain("try: penumbra --help");
+                return kBadInput;
+            }
+        }
     }
     try {
         return context.run();

@@ -119,6 +119,8 @@ bool GuardedStream::fill(Clock::time_point deadline) {
 // Counts one byte of the header section and finds its end.
 bool GuardedStream::count_header(char c) {
     if (++header_bytes_ > limits_.header_bytes) return false;
+    // One line too many is known by its first byte: the library's own count (0.18) would come at its end.
+    if (line_end_ == 2 && c != '\r' && header_lines_ > limits_.header_lines) return false;
     if (c == '\n' && ++header_lines_ > limits_.header_lines + 2) return false;  // request line, blank line
     line_end_ = c == "\r\n\r\n"[line_end_] ? line_end_ + 1 : (c == '\r' ? 1 : 0);
     if (line_end_ == 4) in_header_ = false;

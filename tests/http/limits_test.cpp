@@ -4,6 +4,8 @@
 #include <thread>
 #include <vector>
 
+#include <gmock/gmock.h>
+
 #include "server_fixture.h"
 
 namespace penumbra::test {
@@ -76,7 +78,8 @@ TEST(Limits, AnEndlessChunkLineIs413) {
     client.send(kHead + "Transfer-Encoding: chunked\r\n\r\n");
     client.send(std::string(4u << 20, '0'));
     const std::string response = client.receive();
-    EXPECT_EQ(status_of(response), 413) << response;
+    // cpp-httplib 0.18 refuses the line at 32 KiB as malformed; with 0.11 the body's limit ends it.
+    EXPECT_THAT(status_of(response), testing::AnyOf(400, 413)) << response;
     expect_alive(service);
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Pictures: turned and moved scenes, what pixels hold, stride, region, threads, cancelling.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "tests/truth/scenes.h"
