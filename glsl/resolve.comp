@@ -16,6 +16,8 @@ void main() {
     vec4 sum = vec4(0.0);
     for (int y = 0; y < params.tiles.y; ++y)
         for (int x = 0; x < params.tiles.x; ++x)
-            sum += textureLod(cascade_texture, (vec2(ivec2(x, y) * params.probes) + probe) * params.texel, 0.0);
+            sum += params.aligned != 0
+                ? texelFetch(cascade_texture, ivec2(x, y) * params.probes + pixel, 0)
+                : textureLod(cascade_texture, (vec2(ivec2(x, y) * params.probes) + probe) * params.texel, 0.0);
     imageStore(radiance_image, pixel, sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : vec4(0.0));
 }

@@ -19,7 +19,7 @@ struct ResolveParams {
     vec2 texel;        // 1 / texture size
     vec2 first_probe;  // px
     float spacing;     // px
-    int pad0;
+    int aligned;       // 1: a probe at each pixel's centre, nothing to interpolate
     int pad1;
     int pad2;
 };

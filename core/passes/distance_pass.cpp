@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "core/passes/distance_pass.h"
 
+#include <algorithm>
+
 #include "glsl/distance.h"
 
 namespace penumbra {
@@ -22,7 +24,7 @@ PassWork DistancePass::run(const Plan& plan, const PassSettings& settings, Dista
         params.first_shape = slice.first;
         params.end_shape = slice.end;
         const auto shapes = static_cast<std::size_t>(slice.end - slice.first);
-        work.dispatches += program_.dispatch(params, plan.grid.size, settings.distance_iterations / shapes);
+        work.dispatches += program_.dispatch(params, plan.grid.size, settings.distance_iterations / std::max<std::size_t>(shapes, 1));
         params.continues = 1;
     }
     work.bytes = plan.shape_slices.size() * (out.distance.bytes() + out.material.bytes());

@@ -18,6 +18,7 @@ PassWork ResolvePass::run(const Plan& plan, const gl::Texture2D& cascade, const 
     params.texel = glm::vec2(1.0 / c.texture.x, 1.0 / c.texture.y);
     params.first_probe = glm::vec2(c.first_probe);
     params.spacing = static_cast<float>(c.spacing);
+    params.aligned = c.spacing == 1.0 ? 1 : 0;
     cascade.bind_texture(glsl::kResolveCascadeUnit);
     out.bind_image(glsl::kResolveImageBinding, GL_WRITE_ONLY);
     PassWork work;

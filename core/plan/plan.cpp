@@ -170,27 +170,44 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
         has_bitmaps = has_bitmaps || std::holds_alternative<Bitmap>(shape.geometry);
     }
 
-    if (scene.shapes.empty()) {
-        plan.skipped.push_back({"distance pass", "the scene has no shapes: every distance is the diagonal", double(area(plan.grid.size))});
-    }
+    // `render.skip: "none"` runs what the scene does not need as well, for comparison; the picture is the same.
+    const bool skip = scene.render.skip == Skip::all;
+    const double pixels = double(area(plan.canvas));
+    const double grid_pixels = double(area(plan.grid.size));
+    const auto leave_out = [&](std::string what, std::string why, double saved) {
+        plan.skipped.push_back({std::move(what), std::move(why), saved});
+    };
+
     plan.shape_slices = slice_shapes(scene.shapes);
-    if (has_bitmaps && !brute_force)
-        plan.jump_steps = plan_jumps(plan.grid.size);
+    if (plan.shape_slices.empty()) {
+        if (skip)
+            leave_out("distance pass", "the scene has no shapes: every distance is the diagonal", grid_pixels);
+        else
+            plan.shape_slices.push_back({0, 0});
+    }
+    const std::vector<int> jumps = plan_jumps(plan.grid.size);
+    if (brute_force)
+        leave_out("jump flooding", "rays meet bitmaps texel by texel", grid_pixels * double(jumps.size()));
+    else if (!has_bitmaps && skip)
+        leave_out("jump flooding", "the scene has no bitmaps", grid_pixels * double(jumps.size()));
     else
-        plan.skipped.push_back({"jump flooding", has_bitmaps ? "rays meet bitmaps texel by texel" : "the scene has no bitmaps", double(area(plan.grid.size)) * double(plan_jumps(plan.grid.size).size())});
+        plan.jump_steps = jumps;
 
     const CascadeSettings settings = cascade_settings(scene.render.quality);
-    if (brute_force && peak > 0)
+    if (brute_force)
         plan.reference = plan_reference(scene, limits);
     else
         plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
-    if (peak <= 0) {
-        plan.skipped.push_back({brute_force ? "rays" : "cascades", "nothing emits light", double(area(plan.canvas)) * double(plan.cascades.size())});
+    if (peak <= 0 && skip) {
+        const double rays = brute_force ? plan.reference.rays : 4.0 * double(plan.cascades.size());
+        leave_out(brute_force ? "rays" : "cascades", "nothing emits light", pixels * rays);
         plan.cascades.clear();
+        plan.reference = {};
     }
-    plan.resolve = !plan.cascades.empty() && (settings.spacing_px != 1.0 || settings.base_tiles != 1);
+    const bool resolved = settings.spacing_px == 1.0 && settings.base_tiles == 1;
+    plan.resolve = !plan.cascades.empty() && !(resolved && skip);
     if (!plan.resolve && !plan.cascades.empty())
-        plan.skipped.push_back({"resolve", "cascade 0 is the mean radiance of each pixel", double(area(plan.canvas))});
+        leave_out("resolve", "cascade 0 is the mean radiance of each pixel", pixels);
 
     std::size_t largest_area = area(plan.canvas);
     for (const CascadePlan& c : plan.cascades) largest_area = std::max(largest_area, area(c.texture));

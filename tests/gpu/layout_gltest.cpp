@@ -72,7 +72,7 @@ std::vector<Layout> layouts() {
         {"resolve.comp", sizeof(glsl::ResolveParams),
          {FIELD(ResolveParams, origin), FIELD(ResolveParams, extent), FIELD(ResolveParams, probes),
           FIELD(ResolveParams, tiles), FIELD(ResolveParams, texel), FIELD(ResolveParams, first_probe),
-          FIELD(ResolveParams, spacing), FIELD(ResolveParams, pad0), FIELD(ResolveParams, pad1),
+          FIELD(ResolveParams, spacing), FIELD(ResolveParams, aligned), FIELD(ResolveParams, pad1),
           FIELD(ResolveParams, pad2)},
          glsl::kResolveGroupX, glsl::kResolveGroupY},
         {"reference.comp", sizeof(glsl::ReferenceParams),
