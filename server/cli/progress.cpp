@@ -18,6 +18,10 @@ Progress::~Progress() {
 void Progress::update(double fraction) {
     if (quiet_) return;
     const Clock::time_point now = Clock::now();
+    if (!started_) {
+        started_ = true;
+        start_ = last_ = now;
+    }
     const double since = std::chrono::duration<double>(now - last_).count();
     if (since < (terminal_ ? 0.2 : 10.0)) return;
     last_ = now;

@@ -19,8 +19,9 @@ private:
     bool quiet_;
     bool terminal_;
     bool shown_ = false;
-    Clock::time_point start_ = Clock::now();
-    Clock::time_point last_ = start_;
+    bool started_ = false;       // time counts from the first update
+    Clock::time_point start_;
+    Clock::time_point last_;
 };
 
 }  // namespace penumbra

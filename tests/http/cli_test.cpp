@@ -34,7 +34,7 @@ TEST(Cli, HelpAndVersionSucceed) {
         EXPECT_THAT(finished.out, HasSubstr("penumbra"));
         EXPECT_EQ(finished.err, "");
     }
-    for (const char* command : {"render", "serve", "validate", "info", "health"}) {
+    for (const char* command : {"render", "serve", "validate", "info", "health", "reference", "compare", "bench"}) {
         EXPECT_EQ(penumbra({command, "--help"}).exit_code, 0) << command;
     }
 }
