@@ -12,6 +12,9 @@ namespace {
 std::string check_device(const std::string& device) {
     const bool index = !device.empty() && device.size() <= 4 &&
                        std::all_of(device.begin(), device.end(), [](char c) { return c >= '0' && c <= '9'; });
+#ifdef PENUMBRA_HAS_OSMESA
+    if (device == "osmesa") return "";
+#endif
     if (index || device == "auto" || device == "cpu" || device == "gpu") return "";
     return "a device is auto, cpu, gpu or an index as `penumbra info` lists them, not " + device;
 }
