@@ -5,7 +5,6 @@
 #include <cctype>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <sstream>
 
 #include "core/device_error.h"
@@ -99,6 +98,39 @@ private:
     std::map<std::string, std::string> constants_;
 };
 
+struct LogLine {
+    std::size_t number = 0;  // of the flattened text; 0: the line names none
+    std::size_t column = 0;  // 0: none named
+    std::string message;
+};
+
+// Mesa: "0:12(3): error: ..."; NVIDIA: "0(12) : error C1008: ...".
+LogLine parse_log_line(const std::string& line) {
+    std::size_t at = line.find_first_not_of(" \t");
+    const auto digits = [&]() -> std::size_t {
+        std::size_t value = 0;
+        const std::size_t begin = at;
+        while (at < line.size() && at - begin < 9 && std::isdigit(static_cast<unsigned char>(line[at])) != 0)
+            value = value * 10 + static_cast<std::size_t>(line[at++] - '0');
+        return at == begin ? std::string::npos : value;
+    };
+    const auto skip = [&](char c) { return at < line.size() && line[at] == c ? (++at, true) : false; };
+    if (at == std::string::npos || digits() == std::string::npos) return {};
+    LogLine result;
+    const bool mesa = skip(':');
+    if (mesa) result.number = digits();
+    if (result.number == std::string::npos || !skip('(')) return {};
+    (mesa ? result.column : result.number) = digits();
+    if (result.number == std::string::npos || result.column == std::string::npos || !skip(')')) return {};
+    while (skip(' ')) {
+    }
+    if (!skip(':')) return {};
+    while (skip(' ')) {
+    }
+    result.message = line.substr(at);
+    return result;
+}
+
 }  // namespace
 
 FlatShader flatten_shader(std::string_view name, const std::string& folder) {
@@ -108,29 +140,15 @@ FlatShader flatten_shader(std::string_view name, const std::string& folder) {
 }
 
 std::string translate_log(const FlatShader& shader, std::string_view log) {
-    // Mesa: "0:12(3): error: ..."; NVIDIA: "0(12) : error C1008: ...".
-    static const std::regex kMesa(R"(^\s*\d+:(\d+)\((\d+)\):\s*(.*)$)");
-    static const std::regex kNvidia(R"(^\s*\d+\((\d+)\)\s*:\s*(.*)$)");
     std::istringstream lines{std::string(log)};
     std::string line;
     std::string result;
     while (std::getline(lines, line)) {
-        std::smatch match;
-        std::string column;
-        std::string message;
-        std::size_t number = 0;
-        if (std::regex_match(line, match, kMesa)) {
-            number = std::stoul(match[1]);
-            column = ":" + match[2].str();
-            message = match[3];
-        } else if (std::regex_match(line, match, kNvidia)) {
-            number = std::stoul(match[1]);
-            message = match[2];
-        }
+        const auto [number, column, message] = parse_log_line(line);
         if (number >= 1 && number <= shader.lines.size()) {
             const FlatShader::Origin& origin = shader.lines[number - 1];
             result += "glsl/" + shader.files[static_cast<std::size_t>(origin.file)] + ":" +
-                      std::to_string(origin.line) + column + ": " + message + "\n";
+                      std::to_string(origin.line) + (column > 0 ? ":" + std::to_string(column) : "") + ": " + message + "\n";
         } else if (!line.empty()) {
             result += line + "\n";
         }
