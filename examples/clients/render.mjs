@@ -57,8 +57,7 @@ function explain(status, body) {
         lines.push([problem.title, problem.detail].filter(Boolean).join(": "));
         for (const error of problem.errors ?? []) {
             const place = error.line ? ` (line ${error.line}, column ${error.column})` : "";
-            const hint = error.suggestion ? ` (did you mean ${error.suggestion}?)` : "";
-            lines.push(`  ${error.pointer ?? ""}${place}: ${error.detail ?? error.message ?? ""}${hint}`);
+            lines.push(`  ${error.pointer ?? ""}${place}: ${error.detail ?? error.message ?? ""}`);
         }
     } catch {
         lines.push(body);

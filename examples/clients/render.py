@@ -23,8 +23,7 @@ def explain(status: int, body: bytes) -> str:
             if error.get("line"):
                 place += f" (line {error['line']}, column {error['column']})"
             text = error.get("detail") or error.get("message", "")
-            hint = f" (did you mean {error['suggestion']}?)" if error.get("suggestion") else ""
-            lines.append(f"  {place}: {text}{hint}")
+            lines.append(f"  {place}: {text}")
     except (ValueError, AttributeError, TypeError):
         lines = [body.decode("utf-8", "replace")]
     return f"the service answered {status}\n" + "\n".join(lines)

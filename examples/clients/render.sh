@@ -53,7 +53,7 @@ if [[ $status != 200 ]]; then
     # One problem a line. jq makes it neat; without it the JSON is shown as it came.
     if command -v jq >/dev/null && jq -e . "$work/answer" >/dev/null 2>&1; then
         jq -r '[.title, .detail] | map(select(.)) | join(": ")' "$work/answer" >&2
-        jq -r '(.errors // [])[] | "  \(.pointer // "")" + (if (.line // 0) > 0 then " (line \(.line), column \(.column))" else "" end) + ": \(.detail // .message // "")" + (if (.suggestion // "") != "" then " (did you mean \(.suggestion)?)" else "" end)' "$work/answer" >&2
+        jq -r '(.errors // [])[] | "  \(.pointer // "")" + (if (.line // 0) > 0 then " (line \(.line), column \(.column))" else "" end) + ": \(.detail // .message // "")"' "$work/answer" >&2
     else
         cat "$work/answer" >&2
         printf '\n' >&2

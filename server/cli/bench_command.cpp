@@ -91,7 +91,8 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
     command->add_option("scenes", options->scenes, "Scene files")->required()->check(CLI::ExistingFile);
     command->add_option("--methods", options->methods, "Methods")->delimiter(',')->capture_default_str();
     command->add_option("--qualities", options->qualities, "Qualities")->delimiter(',')->capture_default_str();
-    command->add_option("--sizes", options->sizes, "Pixels along x, 0 for the scene's own size")->delimiter(',')->capture_default_str();
+    command->add_option("--sizes", options->sizes, "Pixels along x, 0 for the scene's own size")
+        ->check(CLI::Range(0, 8192))->delimiter(',')->capture_default_str();
     command->add_option("--devices", options->devices, "Devices: auto, cpu, gpu or an index")->delimiter(',')->capture_default_str();
     command->add_option("-o,--output", options->output,
                         "Results, a line of JSON a case; what the file holds already is not measured again");

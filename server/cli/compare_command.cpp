@@ -172,7 +172,7 @@ void add_compare_command(CLI::App& app, CommandContext& context) {
     command->add_flag("--json", options->json, "Say it as JSON");
     command->add_option("--diff", options->diff, "Write a difference picture (PNG): red too bright and blue too dark, or FLIP's map");
     command->add_option("--pixels-per-degree", options->pixels_per_degree, "Of FLIP's viewer")->check(CLI::PositiveNumber);
-    for (Bound& bound : options->bounds) command->add_option(bound.option, bound.value, bound.help);
+    for (Bound& bound : options->bounds) command->add_option(bound.option, bound.value, bound.help)->check(CLI::NonNegativeNumber);
     command->footer("Exit codes: 0 within all bounds, 1 a bound is exceeded, 2 bad input.");
     command->callback([&context, options] {
         context.run = [options]() -> int {

@@ -176,6 +176,8 @@ TEST(BenchCommand, SaysWhatItCannotMeasure) {
     EXPECT_EQ(finished.exit_code, 1);
     EXPECT_THAT(finished.err, HasSubstr("canvas"));
     EXPECT_EQ(penumbra({"bench", "/no/such.json"}).exit_code, 2);
+    EXPECT_EQ(penumbra({"bench", wrong, "--sizes", "-5"}).exit_code, 2);
+    EXPECT_EQ(penumbra({"compare", wrong, wrong, "--max-nrmse", "-1"}).exit_code, 2);
 }
 
 }  // namespace
