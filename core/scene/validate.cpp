@@ -119,11 +119,8 @@ void validate_gradient(RangeChecks& checks, const Path& where, const std::vector
 }
 
 void validate_sky(RangeChecks& checks, const Path& where, const Sky& sky) {
-    if (sky.gradient.empty()) {
-        checks.colour(where.key("radiance"), sky.radiance, checks.limits().max_radiance);
-    } else {
-        validate_gradient(checks, where.key("gradient"), sky.gradient);
-    }
+    checks.colour(where.key("radiance"), sky.radiance, checks.limits().max_radiance);
+    validate_gradient(checks, where.key("gradient"), sky.gradient);
 }
 
 class LightChecks {

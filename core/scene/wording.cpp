@@ -92,6 +92,10 @@ std::string join_words(std::span<const std::string_view> words) {
     return out;
 }
 
+bool same_letters(std::string_view a, std::string_view b) {
+    return a.size() == b.size() && begins_with(a, b);
+}
+
 std::string_view nearest_word(std::string_view word, std::span<const std::string_view> known) {
     if (word.empty() || word.size() > kLongestWord) {
         return {};

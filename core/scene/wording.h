@@ -17,6 +17,9 @@ std::string in_quotes(std::string_view text);
 // "a, b or c"
 std::string join_words(std::span<const std::string_view> words);
 
+// Whether two words differ in nothing but upper and lower case.
+bool same_letters(std::string_view a, std::string_view b);
+
 // The known word that was most likely meant, "" when none is near. Upper and lower case are alike.
 std::string_view nearest_word(std::string_view word, std::span<const std::string_view> known);
 

@@ -58,7 +58,11 @@ std::vector<Override> resize(const Scene& scene, int size) {
 
 Scene parse(const std::string& path, const std::string& text, const std::vector<Override>& overrides) {
     ParsedScene parsed = parse_scene(text, {}, {}, overrides);
-    if (!parsed.scene) throw std::runtime_error(path + ": " + to_string(parsed.problems.front()));
+    if (!parsed.scene) {
+        LocatedProblem& problem = parsed.problems.front();
+        problem.set_at.clear();  // the overrides are bench's own, nobody wrote --set
+        throw std::runtime_error(path + ": " + to_string(problem));
+    }
     return std::move(*parsed.scene);
 }
 

@@ -21,6 +21,16 @@ constexpr NodeId kNoNode = std::numeric_limits<NodeId>::max();
 using TextOffset = std::uint32_t;
 constexpr TextOffset kNotInText = std::numeric_limits<TextOffset>::max();
 
+// What an override wrote has no place in the text; the largest offsets, which no text reaches, say
+// which override it was.
+constexpr TextOffset kMaxOverrides = 1u << 20;
+constexpr TextOffset kLongestText = kNotInText - kMaxOverrides - 1;
+constexpr TextOffset offset_of_override(std::size_t index) {
+    return index < kMaxOverrides ? kNotInText - 1 - TextOffset(index) : kNotInText;
+}
+constexpr bool is_override(TextOffset offset) { return offset > kLongestText && offset != kNotInText; }
+constexpr std::size_t override_index(TextOffset offset) { return kNotInText - 1 - offset; }
+
 enum class NodeKind : std::uint8_t { null, boolean, number, string, array, object };
 
 // "a number", "a list", ...: what messages call a kind.
@@ -30,8 +40,8 @@ struct Node {
     std::string_view key;                // in its object; views the text, or JsonTree::decoded
     std::string_view string;             // likewise
     double number = 0;                   // also 0 and 1 of a boolean
-    TextOffset offset = kNotInText;      // of the value's first byte
-    TextOffset key_offset = kNotInText;  // of the key's opening quote
+    TextOffset offset = kNotInText;      // of the value's first byte, or of an override
+    TextOffset key_offset = kNotInText;  // of the key's opening quote, or of an override
     NodeId first_child = kNoNode;
     NodeId next_sibling = kNoNode;
     std::uint32_t child_count = 0;

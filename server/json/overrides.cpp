@@ -15,8 +15,9 @@ namespace {
 // Applies one override; what stops it is the returned sentence, "" when nothing does.
 class Application {
 public:
-    Application(JsonTree& tree, const Override& override, const TextLimits& limits)
-        : tree_(tree), override_(override), limits_(limits) {}
+    Application(JsonTree& tree, const Override& override, TextOffset offset,
+                const TextLimits& limits)
+        : tree_(tree), override_(override), offset_(offset), limits_(limits) {}
 
     std::string run() {
         std::string_view rest = override_.pointer;
@@ -72,7 +73,7 @@ public:
 private:
     NodeId parse_value() {
         const std::size_t size = tree_.nodes.size();
-        ParsedText parsed = parse_text(override_.value, limits_, tree_, false);
+        ParsedText parsed = parse_text(override_.value, limits_, tree_, offset_);
         if (!parsed.error) {
             return parsed.root;
         }
@@ -84,6 +85,7 @@ private:
         Node text;
         text.kind = NodeKind::string;
         text.string = override_.value;
+        text.offset = offset_;
         tree_.nodes.push_back(text);
         return NodeId(size);
     }
@@ -93,6 +95,7 @@ private:
         const NodeId before = tree_.last_child(parent);
         Node node;
         node.key = tree_.decoded.emplace_back(key);
+        node.offset = node.key_offset = offset_;
         tree_.nodes.push_back(node);
         NodeId& link =
             before == kNoNode ? tree_.nodes[parent].first_child : tree_.nodes[before].next_sibling;
@@ -113,6 +116,7 @@ private:
 
     JsonTree& tree_;
     const Override& override_;
+    TextOffset offset_;
     const TextLimits& limits_;
     NodeId made_ = kNoNode;  // the last node that append() made
     std::string error_;
@@ -122,14 +126,15 @@ private:
 
 void apply_overrides(JsonTree& tree, const std::vector<Override>& overrides,
                      const TextLimits& limits, ProblemList& problems) {
-    for (const Override& override : overrides) {
-        std::string error = Application(tree, override, limits).run();
+    for (std::size_t i = 0; i < overrides.size(); ++i) {
+        const Override& override = overrides[i];
+        const TextOffset offset = offset_of_override(i);
+        std::string error = Application(tree, override, offset, limits).run();
         if (!error.empty()) {
-            problems.add(
-                {{override.pointer, "bad_override",
-                  "the override of " + in_quotes(override.pointer) + " " + std::move(error)},
-                 kNotInText,
-                 {}});
+            problems.add({{override.pointer, "bad_override",
+                           "the override of " + in_quotes(override.pointer) + " " + std::move(error)},
+                          offset,
+                          {}});
         }
     }
 }

@@ -27,7 +27,10 @@ void ProblemList::add(PendingProblem problem) {
         leave_out();
         return;
     }
-    silenced_.insert(problem.problem.pointer);
+    // That two keys exclude each other says nothing about their values.
+    if (problem.problem.code != "conflict") {
+        silenced_.insert(problem.problem.pointer);
+    }
     any_pointer_above(problem.problem.pointer, [&](const std::string& above) {
         above_.insert(above);
         return false;
@@ -45,9 +48,10 @@ bool ProblemList::follows_from_others(const Problem& problem) const {
     return !about_size && above_.contains(problem.pointer);
 }
 
-std::vector<LocatedProblem> ProblemList::take_located(std::string_view text) {
+std::vector<LocatedProblem> ProblemList::take_located(std::string_view text,
+                                                      const std::vector<Override>& overrides) {
     const auto place = [](const PendingProblem& p) {
-        return p.offset == kNotInText ? 0 : std::uint64_t(p.offset) + 1;
+        return p.offset > kLongestText ? 0 : std::uint64_t(p.offset) + 1;
     };
     std::stable_sort(problems_.begin(), problems_.end(),
                      [&](const auto& a, const auto& b) { return place(a) < place(b); });
@@ -59,7 +63,10 @@ std::vector<LocatedProblem> ProblemList::take_located(std::string_view text) {
         LocatedProblem& out = located.emplace_back();
         out.problem = std::move(pending.problem);
         out.suggestion = std::move(pending.suggestion);
-        if (pending.offset == kNotInText) {
+        if (pending.offset > kLongestText) {
+            if (is_override(pending.offset)) {
+                out.set_at = overrides.at(override_index(pending.offset)).pointer;
+            }
             continue;
         }
         const std::size_t offset = std::min<std::size_t>(pending.offset, text.size());

@@ -36,8 +36,9 @@ public:
     // Whether a problem of the validation only follows from one that the list has already.
     bool follows_from_others(const Problem& problem) const;
 
-    // Ends the list: in the order of the text, with lines and columns.
-    std::vector<LocatedProblem> take_located(std::string_view text);
+    // Ends the list: in the order of the text, with lines and columns, or with the override.
+    std::vector<LocatedProblem> take_located(std::string_view text,
+                                             const std::vector<Override>& overrides);
     std::size_t left_out() const { return left_out_; }
 
 private:

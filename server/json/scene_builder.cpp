@@ -55,7 +55,7 @@ constexpr std::string_view kUses[] = {"emission", "albedo"};
 class SceneBuilder {
 public:
     SceneBuilder(const JsonTree& tree, const Limits& limits, ProblemList& problems)
-        : reader_(tree, problems), bitmaps_(reader_, limits) {}
+        : reader_(tree, problems), limits_(limits), bitmaps_(reader_, limits) {}
 
     Scene build() {
         Scene scene;
@@ -96,8 +96,9 @@ private:
             return;
         }
         const Members members(reader_, where, id, kCanvasKeys, "a canvas");
-        members.need_integer("width", canvas.width);
-        members.need_integer("height", canvas.height);
+        const std::string sides = "from 1 to " + std::to_string(limits_.max_canvas_side_px);
+        members.need_integer("width", canvas.width, sides);
+        members.need_integer("height", canvas.height, sides);
         if (const NodeId view = members.find("view"); view != kNoNode) {
             const auto v = reader_.numbers(where.key("view"), view, 4,
                                            "a rectangle of four numbers [x, y, width, height]");
@@ -343,7 +344,8 @@ private:
         if (const auto quality = read_choice(members, where, "quality", kQualities)) {
             render.quality = std::array{Quality::draft, Quality::standard, Quality::high}[*quality];
         }
-        members.integer("bounces", render.bounces);
+        members.integer("bounces", render.bounces,
+                        "from 0 to " + std::to_string(limits_.max_bounces));
         if (const auto skip = read_choice(members, where, "skip", kSkips)) {
             render.skip = *skip == 0 ? Skip::all : Skip::none;
         }
@@ -356,7 +358,7 @@ private:
         }
         const Members members(reader_, where, id, kOutputKeys, "the output settings");
         members.string("format", output.format);
-        members.integer("bit_depth", output.bit_depth);
+        members.integer("bit_depth", output.bit_depth, "8 or 16");
         members.boolean("antialias", output.antialias);
         if (const auto solids = read_choice(members, where, "solids", kSolids)) {
             output.solids = *solids == 0 ? Solids::emission : Solids::lit;
@@ -366,6 +368,7 @@ private:
     }
 
     ValueReader reader_;
+    const Limits& limits_;
     BitmapReader bitmaps_;
 };
 

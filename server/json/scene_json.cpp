@@ -76,7 +76,7 @@ ParsedScene no_json(std::string_view text, TextError error) {
     problems.add({{std::move(error.pointer), std::move(error.code), std::move(error.message)},
                   TextOffset(error.offset),
                   {}});
-    result.problems = problems.take_located(text);
+    result.problems = problems.take_located(text, {});
     return result;
 }
 
@@ -102,31 +102,39 @@ ParsedScene parse_scene(std::string_view text, const Limits& limits, const TextL
         return result;
     }
     result.problems_left_out = problems.left_out();
-    result.problems = problems.take_located(text);
+    result.problems = problems.take_located(text, overrides);
     return result;
 }
 
 std::string to_string(const LocatedProblem& problem) {
     std::string text = problem.problem.pointer;
+    std::string place;
     if (problem.line > 0) {
-        const std::string place =
-            "line " + std::to_string(problem.line) + ", column " + std::to_string(problem.column);
+        place = "line " + std::to_string(problem.line) + ", column " + std::to_string(problem.column);
+    } else if (!problem.set_at.empty()) {
+        place = "--set " + problem.set_at;
+    }
+    if (!place.empty()) {
         text += text.empty() ? place : " (" + place + ")";
     }
     return text.empty() ? problem.problem.message : text + ": " + problem.problem.message;
 }
 
-std::vector<LocatedProblem> locate(std::string_view text, const Problems& problems) {
+std::vector<LocatedProblem> locate(std::string_view text, const Problems& problems,
+                                   const std::vector<Override>& overrides) {
     JsonTree tree;
     const ParsedText parsed = parse_text(text, TextLimits{}, tree);
     if (parsed.error) {
         tree.nodes.clear();  // half a tree would give half the places
+    } else {
+        ProblemList told(0);  // that one is bad was said when the text was parsed
+        apply_overrides(tree, overrides, TextLimits{}, told);
     }
     ProblemList list(problems.size());
     for (const Problem& problem : problems) {
         list.add(place(tree, problem));
     }
-    return list.take_located(text);
+    return list.take_located(text, overrides);
 }
 
 }  // namespace penumbra

@@ -19,6 +19,7 @@ struct LocatedProblem {
     int line = 0;            // 1-based, in the text as sent; 0 when the place is not in the text
     int column = 0;          // 1-based, in bytes
     std::string suggestion;  // nearest known key or value, "" when there is none
+    std::string set_at{};    // pointer of the override that wrote the value, "" when the text did
 };
 
 // Limits on the text itself, enforced before any tree exists.
@@ -48,10 +49,13 @@ struct ParsedScene {
 ParsedScene parse_scene(std::string_view text, const Limits& limits = {}, const TextLimits& text_limits = {},
                         const std::vector<Override>& overrides = {});
 
-// One line for a terminal: "/shapes/3/radius (line 12, column 40): must be more than 0, is -1".
+// One line for a terminal: "/shapes/3/radius (line 12, column 40): must be more than 0, is -1"; with
+// "(--set /shapes/3/radius)" as the place of what an override wrote.
 std::string to_string(const LocatedProblem& problem);
 
-// Locates problems found after parsing (validation by others, unsupported features) in the text.
-std::vector<LocatedProblem> locate(std::string_view text, const Problems& problems);
+// Locates problems found after parsing (validation by others, unsupported features) in the text with
+// its overrides.
+std::vector<LocatedProblem> locate(std::string_view text, const Problems& problems,
+                                   const std::vector<Override>& overrides = {});
 
 }  // namespace penumbra

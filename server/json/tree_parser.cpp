@@ -20,8 +20,9 @@ constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 // has checked the token by then, so that finding its end is easy.
 class Handler final : public nlohmann::json_sax<nlohmann::json> {
 public:
-    Handler(std::string_view text, const TextLimits& limits, JsonTree& tree, bool in_text)
-        : text_(text), limits_(limits), tree_(tree), in_text_(in_text), first_(tree.nodes.size()) {}
+    Handler(std::string_view text, const TextLimits& limits, JsonTree& tree,
+            std::optional<TextOffset> offset)
+        : text_(text), limits_(limits), tree_(tree), offset_(offset), first_(tree.nodes.size()) {}
 
     bool null() override { return literal(NodeKind::null, 0, 4); }
     bool boolean(bool value) override {
@@ -81,7 +82,7 @@ private:
         NodeId last_child = kNoNode;
     };
 
-    TextOffset offset() const { return in_text_ ? TextOffset(cursor_) : kNotInText; }
+    TextOffset offset() const { return offset_.value_or(TextOffset(cursor_)); }
 
     // To the token of the event at hand: between tokens stand only space, commas and colons.
     void to_token() {
@@ -237,7 +238,7 @@ private:
     std::string_view text_;
     const TextLimits& limits_;
     JsonTree& tree_;
-    bool in_text_;
+    std::optional<TextOffset> offset_;
     std::size_t first_;       // nodes before this parse
     std::size_t cursor_ = 0;  // after the last token
     std::vector<Open> open_;
@@ -253,8 +254,8 @@ ParsedText failed(TextError error) { return ParsedText{kNoNode, std::move(error)
 }  // namespace
 
 ParsedText parse_text(std::string_view text, const TextLimits& limits, JsonTree& tree,
-                      bool in_text) {
-    const std::size_t most = std::min<std::size_t>(limits.max_bytes, kNotInText - 1);
+                      std::optional<TextOffset> offset) {
+    const std::size_t most = std::min<std::size_t>(limits.max_bytes, kLongestText);
     if (text.size() > most) {
         return failed({"too_large",
                        "the text must have at most " + std::to_string(most) + " bytes, has " +
@@ -268,7 +269,7 @@ ParsedText parse_text(std::string_view text, const TextLimits& limits, JsonTree&
             {"syntax", "the text must not start with a byte order mark (EF BB BF)", 0, {}});
     }
     const std::size_t before = tree.nodes.size();
-    Handler handler(text, limits, tree, in_text);
+    Handler handler(text, limits, tree, offset);
     const bool good = nlohmann::json::sax_parse(text.begin(), text.end(), &handler);
     if (auto error = handler.take_error()) {
         return failed(std::move(*error));

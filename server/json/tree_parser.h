@@ -19,12 +19,12 @@ struct TextError {
 };
 
 // Appends the document to `tree` (root first) and returns its root, or says why not. The tree views
-// `text`, which must outlive it. With `in_text` false the nodes get no offsets: overrides.
+// `text`, which must outlive it. With `offset` every node gets that one: overrides.
 struct ParsedText {
     NodeId root = kNoNode;
     std::optional<TextError> error;
 };
 ParsedText parse_text(std::string_view text, const TextLimits& limits, JsonTree& tree,
-                      bool in_text = true);
+                      std::optional<TextOffset> offset = std::nullopt);
 
 }  // namespace penumbra

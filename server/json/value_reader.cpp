@@ -14,19 +14,23 @@ namespace {
 
 constexpr double kUnread = std::numeric_limits<double>::quiet_NaN();
 
-// What people write for what the format calls otherwise; used where the second is a known key.
+// What people write for what the format calls otherwise; used where the second is a known key. The
+// first row that fits counts, so that another spelling of a key comes before another name for one.
 struct OtherName {
     std::string_view written;
     std::string_view meant;
 };
 constexpr OtherName kOtherNames[] = {
+    {"colour", "color"},
     {"color", "emission"},
     {"colour", "emission"},
     {"fill", "emission"},
     {"color", "intensity"},
     {"colour", "intensity"},
     {"color", "irradiance"},
+    {"colour", "irradiance"},
     {"color", "radiance"},
+    {"colour", "radiance"},
     {"emission", "emission_scale"},
     {"emissive", "emission"},
     {"reflectance", "albedo"},
@@ -66,7 +70,7 @@ constexpr Home kHomes[] = {
 
 std::string_view other_name(std::string_view key, std::span<const std::string_view> known) {
     for (const OtherName& name : kOtherNames) {
-        if (name.written == key && is_known_word(name.meant, known)) {
+        if (is_known_word(name.meant, known) && same_letters(name.written, key)) {
             return name.meant;
         }
     }
@@ -95,7 +99,7 @@ double ValueReader::number(const Path& where, NodeId id) {
     return expect(where, id, NodeKind::number, "a number") ? node(id).number : kUnread;
 }
 
-int ValueReader::integer(const Path& where, NodeId id) {
+int ValueReader::integer(const Path& where, NodeId id, std::string_view allowed) {
     if (!expect(where, id, NodeKind::number, "a whole number")) {
         return 0;
     }
@@ -106,10 +110,9 @@ int ValueReader::integer(const Path& where, NodeId id) {
         return 0;
     }
     if (std::abs(value) > std::numeric_limits<int>::max()) {
+        // The validation cannot see what no int holds.
         report(where, id, "out_of_range", [&] {
-            return "must be a whole number of at most " +
-                   std::to_string(std::numeric_limits<int>::max()) + " either way, is " +
-                   number_text(value);
+            return "must be " + std::string(allowed) + ", is " + number_text(value);
         });
         return 0;
     }
@@ -257,9 +260,9 @@ void Members::boolean(std::string_view key, bool& to) const {
     }
 }
 
-void Members::integer(std::string_view key, int& to) const {
+void Members::integer(std::string_view key, int& to, std::string_view allowed) const {
     if (const NodeId id = find(key); id != kNoNode) {
-        to = reader_.integer(where_.key(key), id);
+        to = reader_.integer(where_.key(key), id, allowed);
     }
 }
 
@@ -290,9 +293,9 @@ void Members::need_points(std::string_view key, std::vector<Point>& to) const {
     }
 }
 
-void Members::need_integer(std::string_view key, int& to) const {
+void Members::need_integer(std::string_view key, int& to, std::string_view allowed) const {
     if (const NodeId id = require(key); id != kNoNode) {
-        to = reader_.integer(where_.key(key), id);
+        to = reader_.integer(where_.key(key), id, allowed);
     }
 }
 

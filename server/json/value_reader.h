@@ -25,7 +25,8 @@ public:
     ProblemList& problems() { return problems_; }
 
     double number(const Path& where, NodeId id);
-    int integer(const Path& where, NodeId id);
+    // `allowed` is for the message about a number that no int holds: "from 1 to 8192".
+    int integer(const Path& where, NodeId id, std::string_view allowed);
     bool boolean(const Path& where, NodeId id);
     std::optional<std::string_view> string(const Path& where, NodeId id);
     // The place in `words` of the string at hand.
@@ -81,7 +82,7 @@ public:
     void number(std::string_view key, double& to) const;
     void colour(std::string_view key, Colour& to) const;
     void boolean(std::string_view key, bool& to) const;
-    void integer(std::string_view key, int& to) const;
+    void integer(std::string_view key, int& to, std::string_view allowed) const;
     void string(std::string_view key, std::string& to) const;
 
     // As above, reported when missing; then the value is NaN.
@@ -89,7 +90,7 @@ public:
     void need_colour(std::string_view key, Colour& to) const;
     void need_pair(std::string_view key, std::string_view form, glm::dvec2& to) const;
     void need_points(std::string_view key, std::vector<Point>& to) const;
-    void need_integer(std::string_view key, int& to) const;
+    void need_integer(std::string_view key, int& to, std::string_view allowed) const;
 
 private:
     ValueReader& reader_;

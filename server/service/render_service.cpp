@@ -81,7 +81,7 @@ CheckedScene check_scene(const RenderRequest& request, const SceneLimits& limits
     const Problems missing = unsupported(*parsed.scene);
     if (!missing.empty()) {
         checked.failure = RenderFailure::not_supported;
-        checked.problems = locate(request.text, missing);
+        checked.problems = locate(request.text, missing, request.overrides);
         if (checked.problems.size() > limits.text.max_problems) {
             checked.problems_left_out = checked.problems.size() - limits.text.max_problems;
             checked.problems.resize(limits.text.max_problems);
