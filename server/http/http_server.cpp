@@ -3,10 +3,14 @@
 // expressions, so that a path and a method are refused before a body is read.
 #include "server/http/http_server.h"
 
+#include <netdb.h>
+
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <cstdint>
+#include <cstring>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -78,6 +82,16 @@ ProblemKind kind_of(Fault fault) {
     return ProblemKind::bad_request;
 }
 
+// The library only says that it could not: the system's reason, as far as it is known.
+std::string why_not_bound(const std::string& host, int error) {
+    addrinfo* list = nullptr;
+    if (const int unknown = ::getaddrinfo(host.c_str(), nullptr, nullptr, &list); unknown != 0) {
+        return ::gai_strerror(unknown);
+    }
+    ::freeaddrinfo(list);
+    return error != 0 ? std::strerror(error) : "the address is not of this machine, or the port is taken or not allowed";
+}
+
 }  // namespace
 
 struct HttpServer::Impl {
@@ -123,6 +137,7 @@ struct HttpServer::Impl {
             log.error("Unexpected exception", {{"path", request.path}, {"id", exchange_id()}});
             send(response, make_problem(ProblemKind::internal, ""));
         });
+        server.set_post_routing_handler([this](const Request&, Response& response) { mend_headers(response); });
         server.set_logger([this](const Request& request, const Response& response) {
             log.info("request", {{"method", request.method},
                                  {"path", request.path},
@@ -165,6 +180,15 @@ struct HttpServer::Impl {
         if (exchange.expects_body && !exchange.body_read) exchange.close = true;
         if (server.draining()) exchange.close = true;
         if (exchange.close) response.set_header("Connection", "close");
+    }
+
+    // The library's own headers are not true here: it offers ranges, counts requests that nobody
+    // counts, and says how long a connection is kept that is closed.
+    void mend_headers(Response& response) const {
+        response.headers.erase("Accept-Ranges");
+        if (response.headers.erase("Keep-Alive") > 0 && response.get_header_value("Connection") != "close") {
+            response.set_header("Keep-Alive", "timeout=" + std::to_string(config.keep_alive_s));
+        }
     }
 
     void send(Response& response, const HttpProblem& problem) {
@@ -389,14 +413,16 @@ HttpServer::~HttpServer() { stop(); }
 
 std::string HttpServer::start() {
     Impl& impl = *impl_;
+    errno = 0;
     if (impl.config.port == 0) {
         impl.port = impl.server.bind_to_any_port(impl.config.host);
     } else {
         impl.port = impl.server.bind_to_port(impl.config.host, impl.config.port) ? impl.config.port : -1;
     }
+    const int error = errno;
     if (impl.port <= 0) {
-        return "Cannot listen on " + impl.config.host + " port " + std::to_string(impl.config.port) +
-               ": the address is not of this machine, or the port is taken or not allowed.";
+        return "Cannot listen on " + impl.config.host + " port " + std::to_string(impl.config.port) + ": " +
+               why_not_bound(impl.config.host, error);
     }
     impl.server.widen_backlog();
     impl.listening = true;

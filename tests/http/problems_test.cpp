@@ -117,6 +117,27 @@ TEST(Problems, OtherBodiesAre415) {
     EXPECT_EQ(identity->status, 200);
 }
 
+TEST(Problems, AConnectionThatIsClosedIsNotCalledKept) {
+    const Service service;
+    for (const char* type : {"text/plain", "application/json"}) {
+        RawClient client(service.port());
+        client.send("POST /v1/render HTTP/1.1\r\nHost: x\r\nContent-Type: " + std::string(type) +
+                    "\r\nContent-Length: " + std::to_string(kScene.size()) + "\r\n\r\n" + kScene);
+        const std::string answer = client.receive();
+        const bool closes = std::string(type) == "text/plain";
+        EXPECT_EQ(status_of(answer), closes ? 415 : 200);
+        EXPECT_EQ(answer.find("Connection: close") != std::string::npos, closes) << answer;
+        EXPECT_EQ(answer.find("Keep-Alive:") != std::string::npos, !closes) << answer;
+        // Connections are not counted: no number of requests ends one.
+        EXPECT_EQ(answer.find("max="), std::string::npos);
+        if (closes) {
+            EXPECT_TRUE(client.closed_by_server());
+        } else {
+            EXPECT_NE(answer.find("Keep-Alive: timeout=75\r\n"), std::string::npos) << answer;
+        }
+    }
+}
+
 TEST(Problems, QueryParametersAreNotPassedOverInSilence) {
     const Service service;
     expect_problem(service.client().Post("/v1/render?quality=high", kScene, kJson), 400, "bad-request");

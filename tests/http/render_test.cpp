@@ -128,6 +128,7 @@ TEST(Endpoints, AnswerGetAndHead) {
         ASSERT_TRUE(head) << path;
         EXPECT_EQ(head->status, 200) << path;
         EXPECT_TRUE(head->body.empty());
+        EXPECT_FALSE(head->has_header("Accept-Ranges")) << "ranges are ignored";
     }
     EXPECT_NE(client.Get("/")->body.find("curl"), std::string::npos);
 }

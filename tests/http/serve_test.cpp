@@ -131,7 +131,16 @@ TEST(Serve, ATakenPortIsExitCode1) {
     ASSERT_GT(first.port, 0);
     const Finished second = run_program(PENUMBRA_FAKE_PROGRAM, {"serve", "--port", std::to_string(first.port)});
     EXPECT_EQ(second.exit_code, 1);
-    EXPECT_THAT(second.err, HasSubstr("Cannot listen on 127.0.0.1 port"));
+    EXPECT_THAT(second.err, HasSubstr("Cannot listen on 127.0.0.1 port " + std::to_string(first.port) + ": Address already in use"));
+}
+
+TEST(Serve, TheSystemsReasonIsToldWhenItCannotListen) {
+    const auto reason = [](const std::string& host) {
+        return run_program(PENUMBRA_FAKE_PROGRAM, {"serve", "--port", "0", "--host", host}).err;
+    };
+    EXPECT_THAT(reason("192.0.2.1"), HasSubstr("Cannot assign requested address"));
+    EXPECT_THAT(reason("300.1.1.1.invalid"), HasSubstr("300.1.1.1.invalid"));
+    EXPECT_THAT(reason("300.1.1.1.invalid"), testing::AnyOf(HasSubstr("not known"), HasSubstr("resolution")));
 }
 
 TEST(Serve, TakesItsOptionsFromTheEnvironment) {
