@@ -7,7 +7,8 @@ import { stdin, stdout, stderr, argv, env, exit } from "node:process";
 const usage = `usage: render.mjs SCENE.json|- [-o PICTURE] [--url http://127.0.0.1:8080]
 
 PICTURE is scene.png unless given; "-" is standard output; a name ending in .pfm asks for the linear
-picture. Exit codes: 0 the picture is there, 1 no answer or the service failed, 2 the request is wrong.
+picture. Exit codes: 0 the picture is there, 1 no answer, the service failed or the picture cannot be
+written, 2 the request is wrong.
 `;
 
 function stop(code, text) {
@@ -56,8 +57,10 @@ function explain(status, body) {
         const problem = JSON.parse(body);
         lines.push([problem.title, problem.detail].filter(Boolean).join(": "));
         for (const error of problem.errors ?? []) {
-            const place = error.line ? ` (line ${error.line}, column ${error.column})` : "";
-            lines.push(`  ${error.pointer ?? ""}${place}: ${error.detail ?? error.message ?? ""}`);
+            const pointer = error.pointer ?? "";
+            const spot = error.line ? `line ${error.line}, column ${error.column}` : "";
+            const place = pointer && spot ? `${pointer} (${spot})` : pointer + spot;
+            lines.push(`  ${place}: ${error.detail ?? error.message ?? ""}`);
         }
     } catch {
         lines.push(body);
@@ -83,6 +86,6 @@ const picture = Buffer.from(await answer.arrayBuffer());
 if (output === "-") {
     stdout.write(picture);
 } else {
-    await writeFile(output, picture);
+    await writeFile(output, picture).catch((error) => stop(1, `cannot write ${output}: ${error.code ?? error.message}`));
     console.log(`${output}: ${picture.length} bytes`);
 }

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: MIT
 """Sends a scene to a running Penumbra and saves the picture. Standard library only, Python 3.9 or later.
 
-Exit codes: 0 the picture is there, 1 no answer or the service failed, 2 the request is wrong.
+Exit codes: 0 the picture is there, 1 no answer, the service failed or the picture cannot be written, 2 the
+request is wrong.
 """
 import argparse
+import http.client
 import json
 import os
 import pathlib
@@ -21,7 +23,8 @@ def explain(status: int, body: bytes) -> str:
         for error in problem.get("errors", []):
             place = error.get("pointer", "")
             if error.get("line"):
-                place += f" (line {error['line']}, column {error['column']})"
+                spot = f"line {error['line']}, column {error['column']}"
+                place += f" ({spot})" if place else spot
             text = error.get("detail") or error.get("message", "")
             lines.append(f"  {place}: {text}")
     except (ValueError, AttributeError, TypeError):
@@ -59,13 +62,19 @@ def main() -> int:
     except urllib.error.HTTPError as refusal:
         print("render.py: " + explain(refusal.code, refusal.read()), file=sys.stderr)
         return 2 if refusal.code < 500 else 1
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, http.client.HTTPException) as error:
         print(f"render.py: no answer from {arguments.url}: {getattr(error, 'reason', error)}", file=sys.stderr)
         return 1
-    if arguments.output == "-":
-        sys.stdout.buffer.write(picture)
-    else:
-        pathlib.Path(arguments.output).write_bytes(picture)
+    try:
+        if arguments.output == "-":
+            sys.stdout.buffer.write(picture)
+            sys.stdout.buffer.flush()
+        else:
+            pathlib.Path(arguments.output).write_bytes(picture)
+    except OSError as error:
+        print(f"render.py: cannot write {arguments.output}: {error.strerror}", file=sys.stderr)
+        return 1
+    if arguments.output != "-":
         print(f"{arguments.output}: {len(picture)} bytes")
     return 0
 

@@ -5,10 +5,11 @@
 #   render.sh SCENE.json|- [-o PICTURE] [--url http://127.0.0.1:8080]
 #
 # PICTURE is scene.png unless given; "-" is standard output; a name ending in .pfm asks for the linear
-# picture. Exit codes: 0 the picture is there, 1 no answer or the service failed, 2 the request is wrong.
+# picture. Exit codes: 0 the picture is there, 1 no answer, the service failed or the picture cannot be
+# written, 2 the request is wrong.
 set -euo pipefail
 
-usage() { sed -n '3,8s/^# \{0,1\}//p' "$0"; }
+usage() { sed -n '3,9s/^# \{0,1\}//p' "$0"; }
 wrong() {
     printf 'render.sh: %s\n' "$*" >&2
     exit 2
@@ -53,7 +54,7 @@ if [[ $status != 200 ]]; then
     # One problem a line. jq makes it neat; without it the JSON is shown as it came.
     if command -v jq >/dev/null && jq -e . "$work/answer" >/dev/null 2>&1; then
         jq -r '[.title, .detail] | map(select(.)) | join(": ")' "$work/answer" >&2
-        jq -r '(.errors // [])[] | "  \(.pointer // "")" + (if (.line // 0) > 0 then " (line \(.line), column \(.column))" else "" end) + ": \(.detail // .message // "")"' "$work/answer" >&2
+        jq -r '(.errors // [])[] | (if (.line // 0) > 0 then "line \(.line), column \(.column)" else "" end) as $spot | (.pointer // "") as $pointer | "  " + (if $pointer != "" and $spot != "" then "\($pointer) (\($spot))" else $pointer + $spot end) + ": \(.detail // .message // "")"' "$work/answer" >&2
     else
         cat "$work/answer" >&2
         printf '\n' >&2
@@ -62,6 +63,9 @@ if [[ $status != 200 ]]; then
     exit 1
 fi
 if [[ $picture == - ]]; then cat "$work/answer"; else
-    cp "$work/answer" "$picture"
+    reason=$(cp "$work/answer" "$picture" 2>&1) || {
+        printf 'render.sh: cannot write %s: %s\n' "$picture" "${reason##*: }" >&2
+        exit 1
+    }
     printf '%s: %s bytes\n' "$picture" "$(wc -c <"$picture")"
 fi
