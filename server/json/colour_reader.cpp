@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/scene/wording.h"
+#include "server/json/scene_keys.h"
 #include "server/json/value_reader.h"
 
 namespace penumbra {
@@ -16,7 +17,6 @@ constexpr double kUnread = std::numeric_limits<double>::quiet_NaN();
 constexpr std::string_view kForm =
     "a colour (a number, [r, g, b], \"#rrggbb\" or {\"color\": ..., \"intensity\": ...})";
 constexpr std::string_view kPlainForm = "a colour (a number, [r, g, b] or \"#rrggbb\")";
-constexpr std::string_view kColourKeys[] = {"color", "intensity"};
 
 int hex_digit(char c) {
     if (c >= '0' && c <= '9') {

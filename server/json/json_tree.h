@@ -28,7 +28,9 @@ constexpr TextOffset kLongestText = kNotInText - kMaxOverrides - 1;
 constexpr TextOffset offset_of_override(std::size_t index) {
     return index < kMaxOverrides ? kNotInText - 1 - TextOffset(index) : kNotInText;
 }
-constexpr bool is_override(TextOffset offset) { return offset > kLongestText && offset != kNotInText; }
+constexpr bool is_override(TextOffset offset) {
+    return offset > kLongestText && offset != kNotInText;
+}
 constexpr std::size_t override_index(TextOffset offset) { return kNotInText - 1 - offset; }
 
 enum class NodeKind : std::uint8_t { null, boolean, number, string, array, object };

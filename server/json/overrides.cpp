@@ -131,10 +131,11 @@ void apply_overrides(JsonTree& tree, const std::vector<Override>& overrides,
         const TextOffset offset = offset_of_override(i);
         std::string error = Application(tree, override, offset, limits).run();
         if (!error.empty()) {
-            problems.add({{override.pointer, "bad_override",
-                           "the override of " + in_quotes(override.pointer) + " " + std::move(error)},
-                          offset,
-                          {}});
+            problems.add(
+                {{override.pointer, "bad_override",
+                  "the override of " + in_quotes(override.pointer) + " " + std::move(error)},
+                 offset,
+                 {}});
         }
     }
 }

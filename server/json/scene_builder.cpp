@@ -7,6 +7,7 @@
 
 #include "core/scene/wording.h"
 #include "server/json/bitmap_reader.h"
+#include "server/json/scene_keys.h"
 #include "server/json/value_reader.h"
 
 namespace penumbra {
@@ -16,41 +17,6 @@ namespace {
 using Keys = std::span<const std::string_view>;
 
 constexpr double kUnread = std::numeric_limits<double>::quiet_NaN();
-
-constexpr std::string_view kSceneKeys[] = {"version", "canvas", "sky",   "shapes",
-                                           "lights",  "render", "output"};
-constexpr std::string_view kCanvasKeys[] = {"width", "height", "view", "margin", "floor"};
-constexpr std::string_view kFloorKeys[] = {"albedo"};
-constexpr std::string_view kSkyKeys[] = {"radiance", "gradient"};
-constexpr std::string_view kStopKeys[] = {"angle", "radiance"};
-constexpr std::string_view kRenderKeys[] = {"method", "quality", "bounces", "skip", "view"};
-constexpr std::string_view kOutputKeys[] = {"format", "bit_depth", "antialias",
-                                            "solids", "exposure",  "tonemap"};
-
-constexpr std::string_view kShapeTypes[] = {"circle",   "ellipse", "rect",  "line",
-                                            "polyline", "polygon", "bitmap"};
-constexpr std::string_view kCircleKeys[] = {"type", "emission", "albedo", "center", "radius"};
-constexpr std::string_view kEllipseKeys[] = {"type",   "emission", "albedo",
-                                             "center", "radii",    "rotation"};
-constexpr std::string_view kRectKeys[] = {"type", "emission", "albedo",       "center",
-                                          "size", "rotation", "corner_radius"};
-constexpr std::string_view kLineKeys[] = {"type", "emission", "albedo", "from", "to", "width"};
-constexpr std::string_view kPolylineKeys[] = {"type",   "emission", "albedo",
-                                              "points", "width",    "closed"};
-constexpr std::string_view kPolygonKeys[] = {"type", "emission", "albedo", "points"};
-constexpr std::string_view kBitmapKeys[] = {"type",           "image",       "position", "size",
-                                            "emission_scale", "solid_above", "as"};
-
-constexpr std::string_view kLightTypes[] = {"point", "spot", "directional"};
-constexpr std::string_view kPointLightKeys[] = {"type", "position", "intensity"};
-constexpr std::string_view kSpotKeys[] = {"type",        "position",    "direction",
-                                          "inner_angle", "outer_angle", "intensity"};
-constexpr std::string_view kDirectionalKeys[] = {"type", "direction", "irradiance"};
-
-constexpr std::string_view kQualities[] = {"draft", "standard", "high"};
-constexpr std::string_view kSkips[] = {"all", "none"};
-constexpr std::string_view kSolids[] = {"emission", "lit"};
-constexpr std::string_view kUses[] = {"emission", "albedo"};
 
 class SceneBuilder {
 public:

@@ -110,7 +110,8 @@ std::string to_string(const LocatedProblem& problem) {
     std::string text = problem.problem.pointer;
     std::string place;
     if (problem.line > 0) {
-        place = "line " + std::to_string(problem.line) + ", column " + std::to_string(problem.column);
+        place =
+            "line " + std::to_string(problem.line) + ", column " + std::to_string(problem.column);
     } else if (!problem.set_at.empty()) {
         place = "--set " + problem.set_at;
     }

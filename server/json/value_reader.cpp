@@ -111,9 +111,8 @@ int ValueReader::integer(const Path& where, NodeId id, std::string_view allowed)
     }
     if (std::abs(value) > std::numeric_limits<int>::max()) {
         // The validation cannot see what no int holds.
-        report(where, id, "out_of_range", [&] {
-            return "must be " + std::string(allowed) + ", is " + number_text(value);
-        });
+        report(where, id, "out_of_range",
+               [&] { return "must be " + std::string(allowed) + ", is " + number_text(value); });
         return 0;
     }
     return int(value);

@@ -80,24 +80,32 @@ TEST(Overrides, ProblemsWithTheirValuesHaveNoPlaceInTheText) {
 }
 
 TEST(Overrides, ProblemsNameTheOverrideThatMadeThem) {
-    const ParsedScene parsed = with_overrides(
-        with_shape(R"({"type": "circle", "center": [1, 2], "radius": -1})"),
-        {{"/canvas/width", "8"}, {"/canvas/width", "0"}, {"/shapes/-", R"({"type": "circle", "center": [1, "x"]})"},
-         {"/shapes/-/radius", "1"}, {"/output/tonemap", "acse"}, {"/version/x", "1"}});
+    const ParsedScene parsed =
+        with_overrides(with_shape(R"({"type": "circle", "center": [1, 2], "radius": -1})"),
+                       {{"/canvas/width", "8"},
+                        {"/canvas/width", "0"},
+                        {"/shapes/-", R"({"type": "circle", "center": [1, "x"]})"},
+                        {"/shapes/-/radius", "1"},
+                        {"/output/tonemap", "acse"},
+                        {"/version/x", "1"}});
     std::vector<std::string> places;
     for (const LocatedProblem& p : parsed.problems) {
         places.push_back(p.problem.pointer + " " + p.set_at + " " + std::to_string(p.line));
     }
     EXPECT_THAT(places, testing::UnorderedElementsAre(
-                            "/version/x /version/x 0", "/shapes/1/center/1 /shapes/- 0", "/shapes/1/radius /shapes/- 0",
-                            "/shapes/2/type /shapes/-/radius 0", "/canvas/width /canvas/width 0",
-                            "/output/tonemap /output/tonemap 0", "/shapes/0/radius  1"));
+                            "/version/x /version/x 0", "/shapes/1/center/1 /shapes/- 0",
+                            "/shapes/1/radius /shapes/- 0", "/shapes/2/type /shapes/-/radius 0",
+                            "/canvas/width /canvas/width 0", "/output/tonemap /output/tonemap 0",
+                            "/shapes/0/radius  1"));
     EXPECT_EQ(to_string(LocatedProblem{{"/a/b", "c", "m"}, 0, 0, "", "/a"}), "/a/b (--set /a): m");
 }
 
 TEST(Overrides, ProblemsOfOthersNameThemToo) {
     const std::string text = document(R"(, "render": {"bounces": 0, "method": "rc"})");
-    const auto located = locate(text, {{"/render/bounces", "x", "a"}, {"/output/tonemap", "x", "b"}, {"/render/method", "x", "c"}},
+    const auto located = locate(text,
+                                {{"/render/bounces", "x", "a"},
+                                 {"/output/tonemap", "x", "b"},
+                                 {"/render/method", "x", "c"}},
                                 {{"/render/bounces", "2"}, {"/output/tonemap", "aces"}});
     ASSERT_EQ(located.size(), 3u);
     EXPECT_EQ(to_string(located[0]), "/render/bounces (--set /render/bounces): a");

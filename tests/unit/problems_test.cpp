@@ -106,8 +106,10 @@ TEST(Problems, Suggestions) {
             EXPECT_THAT(problem.problem.message, HasSubstr("did you mean \"" + suggestion + "\"?"));
         }
     }
-    // British spelling means the format's own key where it has that one, and what it calls light elsewhere.
-    const std::string circle = R"({"type": "circle", "center": [1, 1], "radius": 1, "emission": {"color": 1, )";
+    // British spelling means the format's own key where it has that one, and what it calls light
+    // elsewhere.
+    const std::string circle =
+        R"({"type": "circle", "center": [1, 1], "radius": 1, "emission": {"color": 1, )";
     for (const char* written : {"colour", "Colour", "colr", "colors"}) {
         const std::string text = with_shape(circle + "\"" + written + "\": 1}}");
         EXPECT_EQ(only(parse_scene(text)).suggestion, "color") << written;
@@ -115,11 +117,14 @@ TEST(Problems, Suggestions) {
     for (const char* written : {"color", "colour", "Colour"}) {
         const std::string key = std::string("\"") + written + "\": 1";
         const std::pair<std::string, std::string> places[] = {
-            {with_shape(R"({"type": "circle", "center": [1, 1], "radius": 1, )" + key + "}"), "emission"},
+            {with_shape(R"({"type": "circle", "center": [1, 1], "radius": 1, )" + key + "}"),
+             "emission"},
             {document(R"(, "sky": {)" + key + "}"), "radiance"},
-            {document(R"(, "lights": [{"type": "point", "position": [1, 1], "intensity": 1, )" + key + "}]"),
+            {document(R"(, "lights": [{"type": "point", "position": [1, 1], "intensity": 1, )" +
+                      key + "}]"),
              "intensity"},
-            {document(R"(, "lights": [{"type": "directional", "direction": 1, "irradiance": 1, )" + key + "}]"),
+            {document(R"(, "lights": [{"type": "directional", "direction": 1, "irradiance": 1, )" +
+                      key + "}]"),
              "irradiance"},
         };
         for (const auto& [text, suggestion] : places) {
@@ -196,22 +201,26 @@ TEST(Problems, WhatOnlyFollowsIsNotSaid) {
 }
 
 TEST(Problems, AConflictHidesNoOtherProblem) {
-    EXPECT_THAT(brief(parse_scene(document(R"(, "sky": {"radiance": -1, "gradient": [
+    EXPECT_THAT(
+        brief(parse_scene(document(R"(, "sky": {"radiance": -1, "gradient": [
         {"angle": 10, "radiance": 1}, {"angle": 5, "radiance": -2}, {"angle": 400, "radiance": "x"}]})"))),
-                ElementsAre("/sky/radiance out_of_range", "/sky/gradient conflict",
-                            "/sky/gradient/1/angle not_in_order", "/sky/gradient/1/radiance out_of_range",
-                            "/sky/gradient/2/angle out_of_range", "/sky/gradient/2/radiance bad_colour"));
+        ElementsAre("/sky/radiance out_of_range", "/sky/gradient conflict",
+                    "/sky/gradient/1/angle not_in_order", "/sky/gradient/1/radiance out_of_range",
+                    "/sky/gradient/2/angle out_of_range", "/sky/gradient/2/radiance bad_colour"));
     Limits limits;
     limits.max_sky_stops = 1;
     EXPECT_THAT(brief(parse_scene(document(R"(, "sky": {"radiance": 1, "gradient": [
-        {"angle": 1, "radiance": 1}, {"angle": 2, "radiance": 2}]})"), limits)),
+        {"angle": 1, "radiance": 1}, {"angle": 2, "radiance": 2}]})"),
+                                  limits)),
                 ElementsAre("/sky/gradient conflict", "/sky/gradient too_many"));
 }
 
 TEST(Problems, NumbersThatNoIntegerHoldsAreToldTheRealLimit) {
     const std::pair<std::string, std::string> cases[] = {
-        {R"({"version": 1, "canvas": {"width": 3000000001, "height": 4}})", "must be from 1 to 8192, is 3000000001"},
-        {R"({"version": 1, "canvas": {"width": 4, "height": -1e300}})", "must be from 1 to 8192, is -1e+300"},
+        {R"({"version": 1, "canvas": {"width": 3000000001, "height": 4}})",
+         "must be from 1 to 8192, is 3000000001"},
+        {R"({"version": 1, "canvas": {"width": 4, "height": -1e300}})",
+         "must be from 1 to 8192, is -1e+300"},
         {document(R"(, "render": {"bounces": 2147483648})"), "must be from 0 to 64, is 2147483648"},
         {document(R"(, "output": {"bit_depth": 1e10})"), "must be 8 or 16, is 1e+10"},
     };
@@ -220,7 +229,8 @@ TEST(Problems, NumbersThatNoIntegerHoldsAreToldTheRealLimit) {
     }
     Limits limits;
     limits.max_canvas_side_px = 100;
-    EXPECT_EQ(only(parse_scene(cases[0].first, limits)).problem.message, "must be from 1 to 100, is 3000000001");
+    EXPECT_EQ(only(parse_scene(cases[0].first, limits)).problem.message,
+              "must be from 1 to 100, is 3000000001");
 }
 
 TEST(Problems, ChannelsOfAColourThatIsNoListStandAtTheColour) {

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Every key of the scene format, object by object, and the words that the parser tells apart itself
+// (core/scene/words.h has the others). A test compares them with docs/scene.schema.json.
+#pragma once
+
+#include <string_view>
+
+namespace penumbra {
+
+inline constexpr std::string_view kSceneKeys[] = {"version", "canvas", "sky",   "shapes",
+                                                  "lights",  "render", "output"};
+inline constexpr std::string_view kCanvasKeys[] = {"width", "height", "view", "margin", "floor"};
+inline constexpr std::string_view kFloorKeys[] = {"albedo"};
+inline constexpr std::string_view kSkyKeys[] = {"radiance", "gradient"};
+inline constexpr std::string_view kStopKeys[] = {"angle", "radiance"};
+inline constexpr std::string_view kRenderKeys[] = {"method", "quality", "bounces", "skip", "view"};
+inline constexpr std::string_view kOutputKeys[] = {"format", "bit_depth", "antialias",
+                                                   "solids", "exposure",  "tonemap"};
+inline constexpr std::string_view kColourKeys[] = {"color", "intensity"};
+
+inline constexpr std::string_view kShapeTypes[] = {"circle",   "ellipse", "rect",  "line",
+                                                   "polyline", "polygon", "bitmap"};
+inline constexpr std::string_view kCircleKeys[] = {"type", "emission", "albedo", "center",
+                                                   "radius"};
+inline constexpr std::string_view kEllipseKeys[] = {"type",   "emission", "albedo",
+                                                    "center", "radii",    "rotation"};
+inline constexpr std::string_view kRectKeys[] = {"type", "emission", "albedo",       "center",
+                                                 "size", "rotation", "corner_radius"};
+inline constexpr std::string_view kLineKeys[] = {"type", "emission", "albedo",
+                                                 "from", "to",       "width"};
+inline constexpr std::string_view kPolylineKeys[] = {"type",   "emission", "albedo",
+                                                     "points", "width",    "closed"};
+inline constexpr std::string_view kPolygonKeys[] = {"type", "emission", "albedo", "points"};
+inline constexpr std::string_view kBitmapKeys[] = {
+    "type", "image", "position", "size", "emission_scale", "solid_above", "as"};
+
+inline constexpr std::string_view kLightTypes[] = {"point", "spot", "directional"};
+inline constexpr std::string_view kPointLightKeys[] = {"type", "position", "intensity"};
+inline constexpr std::string_view kSpotKeys[] = {"type",        "position",    "direction",
+                                                 "inner_angle", "outer_angle", "intensity"};
+inline constexpr std::string_view kDirectionalKeys[] = {"type", "direction", "irradiance"};
+
+inline constexpr std::string_view kQualities[] = {"draft", "standard", "high"};
+inline constexpr std::string_view kSkips[] = {"all", "none"};
+inline constexpr std::string_view kSolids[] = {"emission", "lit"};
+inline constexpr std::string_view kUses[] = {"emission", "albedo"};
+
+}  // namespace penumbra
