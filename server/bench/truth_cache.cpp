@@ -31,9 +31,7 @@ std::string hex(std::uint64_t value) {
     return text;
 }
 
-TruthCache::TruthCache(std::string folder) : folder_(std::move(folder)) {
-    std::filesystem::create_directories(folder_);
-}
+TruthCache::TruthCache(std::string folder) : folder_(std::move(folder)) {}
 
 Truth TruthCache::get(const Scene& scene, const std::string& identity, int stride,
                       const std::function<bool(double)>& progress) const {
@@ -58,6 +56,7 @@ Truth TruthCache::get(const Scene& scene, const std::string& identity, int strid
     if (!solution.problems.empty())
         throw std::runtime_error("the exact solver refuses it: " + solution.problems.front().message);
     if (solution.cancelled) throw std::runtime_error("interrupted");
+    std::filesystem::create_directories(folder_);
     write_file(path, encode_pfm(solution.image));
     write_text(note, std::to_string(solution.seconds));
     truth.image = std::move(solution.image);

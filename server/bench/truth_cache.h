@@ -24,7 +24,7 @@ struct Truth {
 
 class TruthCache {
 public:
-    explicit TruthCache(std::string folder);
+    explicit TruthCache(std::string folder);  // made when the first truth is written
 
     // `identity` is what the light depends on: the scene's text and its overrides. Throws std::runtime_error when the
     // solver refuses the scene or the folder cannot be written.

@@ -9,9 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "server/bench/bench.h"
+#include "server/cli/checks.h"
 #include "server/cli/commands.h"
 #include "server/cli/files.h"
 #include "server/cli/progress.h"
+#include "server/json/scene_json.h"
 
 namespace penumbra {
 namespace {
@@ -44,7 +46,19 @@ void tell(const std::string& row_text) {
                  row["cpu_ms"]["median"].get<double>(), error.c_str());
 }
 
+// Every word that no scene could be rendered with, judged on a small one.
+void check_words(const std::string& option, const std::string& pointer, const std::vector<std::string>& words, const Engine& engine) {
+    for (const std::string& word : words) {
+        const ParsedScene parsed =
+            parse_scene(R"({"version": 1, "canvas": {"width": 16, "height": 16}})", {}, {}, {{pointer, word}});
+        if (!parsed.scene) throw InputError(option + ": " + parsed.problems.front().problem.message);
+        for (const Problem& problem : engine.unsupported(*parsed.scene)) throw InputError(option + ": " + problem.message);
+    }
+}
+
 int run_bench(const BenchOptions& options, const Engine& engine) {
+    check_words("--methods", "/render/method", options.methods, engine);
+    check_words("--qualities", "/render/quality", options.qualities, engine);
     const bool to_file = options.output != "-";
     if (options.fresh && to_file) std::ofstream(options.output, std::ios::trunc);
     const std::set<std::string> done = to_file ? finished_cases(options.output) : std::set<std::string>();
@@ -88,23 +102,26 @@ int run_bench(const BenchOptions& options, const Engine& engine) {
 void add_bench_command(CLI::App& app, CommandContext& context) {
     CLI::App* command = app.add_subcommand("bench", "Measure time against error (see docs/benchmarks.md)");
     auto options = std::make_shared<BenchOptions>();
-    command->add_option("scenes", options->scenes, "Scene files")->required()->check(CLI::ExistingFile);
+    command->add_option("scenes", options->scenes, "Scene files")->required()->check(readable_file());
     command->add_option("--methods", options->methods, "Methods")->delimiter(',')->capture_default_str();
     command->add_option("--qualities", options->qualities, "Qualities")->delimiter(',')->capture_default_str();
     command->add_option("--sizes", options->sizes, "Pixels along x, 0 for the scene's own size")
-        ->check(CLI::Range(0, 8192))->delimiter(',')->capture_default_str();
-    command->add_option("--devices", options->devices, "Devices: auto, cpu, gpu or an index")->delimiter(',')->capture_default_str();
+        ->check(whole_number(0, 8192))->delimiter(',')->capture_default_str();
+    command->add_option("--devices", options->devices, "Devices: auto, cpu, gpu or an index")
+        ->check(device_name())->delimiter(',')->capture_default_str();
     command->add_option("-o,--output", options->output,
                         "Results, a line of JSON a case; what the file holds already is not measured again");
     command->add_flag("--fresh", options->fresh, "Measure all cases anew");
-    command->add_option("--truths", options->truths, "Folder of exact solutions, kept by the scene's hash")->capture_default_str();
-    command->add_flag("!--no-errors", options->settings.errors, "Measure time only");
-    command->add_option("--repeats", options->settings.repeats, "Measured renders a case")->check(CLI::Range(1, 1000))->capture_default_str();
-    command->add_option("--warm-up", options->settings.warm_up, "Renders before them")->check(CLI::Range(0, 100))->capture_default_str();
-    command->add_option("--most-seconds", options->settings.most_seconds, "Of one case; three renders are always made")->capture_default_str();
+    command->add_option("--truths,--truth-dir", options->truths,
+                        "Folder of exact solutions, kept by the scene's hash; made when the first one is solved")->capture_default_str();
+    command->add_flag("!--no-errors", options->settings.errors, "Measure time only; nothing is solved");
+    command->add_option("--repeats", options->settings.repeats, "Measured renders a case")->check(whole_number(1, 1000))->capture_default_str();
+    command->add_option("--warm-up", options->settings.warm_up, "Renders before them")->check(whole_number(0, 100))->capture_default_str();
+    command->add_option("--most-seconds", options->settings.most_seconds, "Of one case; three renders are always made")
+        ->check(number_of_at_least(0))->capture_default_str();
     command->add_option("--truth-pixels", options->settings.truth_pixels,
                         "Larger pictures are compared at every N-th pixel, about this many a side")
-        ->check(CLI::Range(1, 8192))->capture_default_str();
+        ->check(whole_number(1, 8192))->capture_default_str();
     command->callback([&context, options] {
         context.run = [&context, options]() -> int {
             try {

@@ -14,8 +14,10 @@
 #include "core/compare/error_figures.h"
 #include "core/compare/flip.h"
 #include "core/image/codec.h"
+#include "server/cli/checks.h"
 #include "server/cli/commands.h"
 #include "server/cli/files.h"
+#include "server/service/formats.h"
 
 namespace penumbra {
 namespace {
@@ -145,6 +147,9 @@ void print_figures(const ordered_json& figures) {
 }
 
 int compare_files(const CompareOptions& options) {
+    const PictureFormat* format = find_format_of_file(options.diff);
+    if (!options.diff.empty() && (format == nullptr || format->name != "png"))
+        throw InputError("--diff takes a name that ends in .png, not " + options.diff);
     const Picture a = read_picture(options.a);
     const Picture b = read_picture(options.b);
     if (a.index() != b.index()) throw InputError("one picture is linear (PFM) and the other is not");
@@ -170,9 +175,9 @@ void add_compare_command(CLI::App& app, CommandContext& context) {
     command->add_option("a", options->a, "Picture, PFM or PNG")->required();
     command->add_option("b", options->b, "The truth, of the same kind and size; NaN samples of a PFM are left out")->required();
     command->add_flag("--json", options->json, "Say it as JSON");
-    command->add_option("--diff", options->diff, "Write a difference picture (PNG): red too bright and blue too dark, or FLIP's map");
-    command->add_option("--pixels-per-degree", options->pixels_per_degree, "Of FLIP's viewer")->check(CLI::PositiveNumber);
-    for (Bound& bound : options->bounds) command->add_option(bound.option, bound.value, bound.help)->check(CLI::NonNegativeNumber);
+    command->add_option("--diff", options->diff, "Write a difference picture (.png): red too bright and blue too dark, or FLIP's map");
+    command->add_option("--pixels-per-degree", options->pixels_per_degree, "Of FLIP's viewer")->check(number_of_more_than(0));
+    for (Bound& bound : options->bounds) command->add_option(bound.option, bound.value, bound.help)->check(number_of_at_least(0));
     command->footer("Exit codes: 0 within all bounds, 1 a bound is exceeded, 2 bad input.");
     command->callback([&context, options] {
         context.run = [options]() -> int {

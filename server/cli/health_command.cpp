@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "server/cli/checks.h"
 #include "server/cli/commands.h"
 #include "server/cli/files.h"
 
@@ -107,8 +108,8 @@ void add_health_command(CLI::App& app, CommandContext& context) {
     command->add_option("--port", *port, "Port on this machine")
         ->envname("PENUMBRA_PORT")
         ->capture_default_str()
-        ->check(CLI::Range(1, 65535));
-    command->add_option("--timeout", *timeout, "Seconds to wait")->capture_default_str()->check(CLI::Range(1, 60));
+        ->check(whole_number(1, 65535));
+    command->add_option("--timeout", *timeout, "Seconds to wait")->capture_default_str()->check(whole_number(1, 60));
     command->callback([&context, url, port, timeout] {
         context.run = [url, port, timeout]() -> int {
             try {

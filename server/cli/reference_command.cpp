@@ -8,10 +8,12 @@
 
 #include "core/image/codec.h"
 #include "core/reference/solver.h"
+#include "server/cli/checks.h"
 #include "server/cli/commands.h"
 #include "server/cli/files.h"
 #include "server/cli/progress.h"
 #include "server/cli/scene_input.h"
+#include "server/service/formats.h"
 
 namespace penumbra {
 namespace {
@@ -29,6 +31,9 @@ volatile std::sig_atomic_t interrupted = 0;
 void interrupt(int) { interrupted = 1; }
 
 int solve_file(const ReferenceOptions& options) {
+    const PictureFormat* format = find_format_of_file(options.output);
+    if (options.output != "-" && (format == nullptr || format->name != "pfm"))
+        throw InputError("--output takes a name that ends in .pfm, or -, not " + options.output);
     if (options.output == "-" && stdout_is_terminal())
         throw InputError("a picture does not go to a terminal; use -o FILE or a pipe");
     const std::optional<Scene> scene = read_scene(options.scene, parse_sets(options.sets));
@@ -65,13 +70,13 @@ void add_reference_command(CLI::App& app, CommandContext& context) {
     CLI::App* command = app.add_subcommand("reference", "Solve a scene exactly (slow, on the CPU): the truth");
     auto options = std::make_shared<ReferenceOptions>();
     command->add_option("scene", options->scene, "Scene file, - for the standard input")->required();
-    command->add_option("-o,--output", options->output, "PFM file, - for the standard output; NaN where solid")->required();
+    command->add_option("-o,--output", options->output, "Picture file (.pfm), - for the standard output; NaN where solid")->required();
     command->add_option("--stride", options->stride, "Solve every N-th pixel in both axes; the others are NaN")
-        ->check(CLI::Range(1, 4096));
-    command->add_option("--threads", options->threads, "Threads, 0 for one each processor")->check(CLI::Range(0, 1024));
+        ->check(whole_number(1, 4096));
+    command->add_option("--threads", options->threads, "Threads, 0 for one each processor")->check(whole_number(0, 1024));
     command->add_option("--element-length", options->element_length_px,
                         "Longest boundary element in pixels, where light bounces")
-        ->check(CLI::Range(0.01, 1000.0));
+        ->check(number_between(0.01, 1000));
     command->add_option("--set", options->sets, "Replace a value of the scene: /json/pointer=value")->expected(1)->take_all();
     command->add_flag("-q,--quiet", options->quiet, "No progress on the standard error");
     command->callback([&context, options] {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "server/cli/commands.h"
 #include "server/cli/files.h"
@@ -13,35 +14,71 @@
 namespace penumbra {
 namespace {
 
-int validate_file(const std::string& path, bool json, const Engine& engine) {
+CheckedScene check_file(const std::string& path, const Engine& engine) {
     const SceneLimits limits = limits_of(Config{});
     const std::string text = read_text(path, limits.text.max_bytes);
     RenderRequest request;
     request.text = text;
-    const CheckedScene checked = check_scene(request, limits, engine.unsupported);
+    return check_scene(request, limits, engine.unsupported);
+}
+
+void report(const std::string& path, const CheckedScene& checked) {
+    complain_about_scene(path, checked.problems, checked.problems_left_out);
+    if (checked.failure == RenderFailure::none)
+        write_text("-", (path == "-" ? "<stdin>" : path) + ": valid\n");
+}
+
+int validate_file(const std::string& path, bool json, const Engine& engine) {
+    const CheckedScene checked = check_file(path, engine);
     if (json) {
         write_text("-", validation_json(checked));
     } else {
-        complain_about_scene(path, checked.problems, checked.problems_left_out);
-        if (checked.failure == RenderFailure::none) {
-            write_text("-", (path == "-" ? "<stdin>" : path) + ": valid\n");
-        }
+        report(path, checked);
     }
     return checked.failure == RenderFailure::none ? kSuccess : kBadInput;
+}
+
+// Each is reported, whatever the ones before it are.
+int validate_files(const std::vector<std::string>& paths, bool json, const Engine& engine) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    bool good = true;
+    for (const std::string& path : paths) {
+        CheckedScene checked;
+        try {
+            checked = check_file(path, engine);
+            if (!json) report(path, checked);
+        } catch (const InputError& error) {
+            checked.failure = RenderFailure::not_json;
+            checked.problems = {{{"", "unreadable", error.what()}, 0, 0, ""}};
+            if (!json) complain(error.what());
+        }
+        good = good && checked.failure == RenderFailure::none;
+        if (!json) continue;
+        nlohmann::ordered_json entry = {{"file", path}};
+        entry.update(nlohmann::ordered_json::parse(validation_json(checked)));
+        list.push_back(std::move(entry));
+    }
+    if (json)
+        write_text(
+            "-", list.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    return good ? kSuccess : kWorldFailed;
 }
 
 }  // namespace
 
 void add_validate_command(CLI::App& app, CommandContext& context) {
-    CLI::App* command = app.add_subcommand("validate", "List every problem of a scene");
-    auto path = std::make_shared<std::string>();
+    CLI::App* command = app.add_subcommand("validate", "List every problem of scenes");
+    auto paths = std::make_shared<std::vector<std::string>>();
     auto json = std::make_shared<bool>(false);
-    command->add_option("scene", *path, "Scene file, - for the standard input")->required();
-    command->add_flag("--json", *json, "Say it as JSON on the standard output");
-    command->callback([&context, path, json] {
-        context.run = [&context, path, json]() -> int {
+    command->add_option("scenes", *paths, "Scene files, - for the standard input")->required();
+    command->add_flag("--json", *json,
+                      "Say it as JSON on the standard output; a list when there are several files");
+    command->footer("Exit codes: 0 all are valid, 2 the only one is not, 1 one of several is not.");
+    command->callback([&context, paths, json] {
+        context.run = [&context, paths, json]() -> int {
             try {
-                return validate_file(*path, *json, context.engine);
+                return paths->size() == 1 ? validate_file(paths->front(), *json, context.engine)
+                                          : validate_files(*paths, *json, context.engine);
             } catch (const InputError& error) {
                 complain(error.what());
                 return kBadInput;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <sstream>
@@ -77,6 +78,26 @@ TEST(ReferenceCommand, BadScenesAreExitCode2) {
     EXPECT_THAT(finished.err, HasSubstr("/canvas/width"));
     EXPECT_EQ(penumbra({"reference", "-", "-o", "-", "--stride", "0"}, kLamp).exit_code, 2);
     EXPECT_EQ(penumbra({"reference", "/no/such.json", "-o", "-"}).exit_code, 2);
+}
+
+TEST(ReferenceCommand, JudgesTheFilesNameBeforeItWorks) {
+    TemporaryFolder folder;
+    for (const char* name : {"out.png", "out", "out.pfm.exr"}) {
+        // The scene is not looked at: there is none.
+        const Finished finished = penumbra({"reference", "/no/such.json", "-o", folder.path(name)});
+        EXPECT_EQ(finished.exit_code, 2);
+        EXPECT_EQ(finished.err, "penumbra: --output takes a name that ends in .pfm, or -, not " + folder.path(name) + "\n");
+    }
+    EXPECT_EQ(penumbra({"reference", "-", "-o", folder.path("out.PFM")}, kLamp).exit_code, 0);
+}
+
+TEST(CompareCommand, JudgesTheFilesNameBeforeItWorks) {
+    TemporaryFolder folder;
+    for (const char* name : {"d.pfm", "d"}) {
+        const Finished finished = penumbra({"compare", "/no/a.pfm", "/no/b.pfm", "--diff", folder.path(name)});
+        EXPECT_EQ(finished.exit_code, 2);
+        EXPECT_EQ(finished.err, "penumbra: --diff takes a name that ends in .png, not " + folder.path(name) + "\n");
+    }
 }
 
 TEST(CompareCommand, GivesTheFiguresOfLinearPictures) {
@@ -169,12 +190,50 @@ TEST(BenchCommand, MeasuresResumesAndKeepsTruths) {
     EXPECT_THAT(again.err, HasSubstr("4 cases were in"));
 }
 
+TEST(BenchCommand, JudgesItsWordsOnceBeforeItWorks) {
+    TemporaryFolder folder;
+    const std::string scene = folder.write("lamp.json", kLamp);
+    const std::pair<std::vector<std::string>, std::string> lines[] = {
+        {{"--methods", "rc,refrence"}, "penumbra: --methods: must be auto, rc, rc_fix, hrc, exact, hybrid or reference, is "
+                                       "\"refrence\" (did you mean \"reference\"?)\n"},
+        {{"--qualities", "draft,hi"}, "penumbra: --qualities: must be draft, standard or high, is \"hi\"\n"},
+        {{"--devices", "toaster"}, "penumbra: --devices: must be auto, cpu, gpu or an index"},
+    };
+    for (const auto& [options, message] : lines) {
+        std::vector<std::string> line{"bench", scene, "-o", folder.path("r.jsonl"), "--truths", folder.path("t"), "--fresh"};
+        line.insert(line.end(), options.begin(), options.end());
+        const Finished finished = penumbra(line);
+        EXPECT_EQ(finished.exit_code, 2) << finished.err;
+        EXPECT_TRUE(finished.err.starts_with(message)) << finished.err;
+        EXPECT_FALSE(std::filesystem::exists(folder.path("r.jsonl")));
+        EXPECT_FALSE(std::filesystem::exists(folder.path("t")));
+    }
+}
+
+TEST(BenchCommand, MakesAFolderOfTruthsOnlyForATruth) {
+    TemporaryFolder folder;
+    const std::string scene = folder.write("lamp.json", kLamp);
+    const std::vector<std::string> line = {"bench", scene, "--sizes", "20", "--qualities", "draft", "--repeats", "1",
+                                           "--truth-dir", folder.path("a/b")};
+    std::vector<std::string> time_only = line;
+    time_only.push_back("--no-errors");
+    EXPECT_EQ(penumbra(time_only).exit_code, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder.path("a")));
+    const Finished solved = penumbra(line);
+    EXPECT_EQ(solved.exit_code, 0) << solved.err;
+    EXPECT_TRUE(std::filesystem::exists(folder.path("a/b")));
+    EXPECT_THAT(penumbra({"bench", "--help"}).out, HasSubstr("made when"));
+}
+
 TEST(BenchCommand, SaysWhatItCannotMeasure) {
     TemporaryFolder folder;
     const std::string wrong = folder.write("wrong.json", R"({"version": 1})");
     const Finished finished = penumbra({"bench", wrong, "--truths", folder.path("t"), "--sizes", "8"});
     EXPECT_EQ(finished.exit_code, 1);
     EXPECT_THAT(finished.err, HasSubstr("canvas"));
+    const std::string tall = folder.write("tall.json", R"({"version": 1, "canvas": {"width": 8, "height": 80}})");
+    const Finished too_tall = penumbra({"bench", tall, "--truths", folder.path("t"), "--sizes", "8192"});
+    EXPECT_THAT(too_tall.err, HasSubstr("/canvas/height: must be from 1 to 8192")) << "not --set, which was not used";
     EXPECT_EQ(penumbra({"bench", "/no/such.json"}).exit_code, 2);
     EXPECT_EQ(penumbra({"bench", wrong, "--sizes", "-5"}).exit_code, 2);
     EXPECT_EQ(penumbra({"compare", wrong, wrong, "--max-nrmse", "-1"}).exit_code, 2);
