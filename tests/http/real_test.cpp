@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <sstream>
+
 #include <httplib.h>
 #include <nlohmann/json.hpp>
 
@@ -60,6 +62,29 @@ TEST(Real, CommandLineAndServiceGiveTheSameBytes) {
 
     program.signal(SIGTERM);
     EXPECT_EQ(program.wait(), 0) << program.err();
+}
+
+TEST(Real, EveryNameInServerTimingIsDescribed) {
+    const std::string api = read_file(PENUMBRA_SOURCE_DIR "/docs/api.md");
+    const TemporaryFolder folder;
+    Running program(PENUMBRA_PROGRAM, {"serve", "--port", "0", "--port-file", folder.path("port")});
+    const int port = wait_for_port(folder.path("port"));
+    ASSERT_GT(port, 0) << program.err();
+    httplib::Client client("127.0.0.1", port);
+    client.set_read_timeout(60);
+    for (const char* render : {R"({"quality": "draft"})", R"({"skip": "none"})", R"({"method": "reference"})"}) {
+        std::string scene = kScene;
+        scene.insert(scene.rfind('}'), std::string(", \"render\": ") + render);
+        const auto served = client.Post("/v1/render", scene, "application/json");
+        ASSERT_TRUE(served) << program.err();
+        ASSERT_EQ(served->status, 200) << served->body;
+        std::istringstream timing(served->get_header_value("Server-Timing"));
+        for (std::string entry; std::getline(timing >> std::ws, entry, ',');) {
+            std::string name = entry.substr(0, entry.find(';'));
+            if (name.starts_with("cascade-")) name = "cascade-0";
+            EXPECT_NE(api.find('`' + name + '`'), std::string::npos) << name;
+        }
+    }
 }
 
 TEST(Real, InfoAndStatsAreJson) {
