@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <numbers>
 #include <optional>
 #include <thread>
@@ -15,6 +16,7 @@
 #include "core/passes/cascade_pass.h"
 #include "core/passes/compose_pass.h"
 #include "core/passes/distance_pass.h"
+#include "core/passes/exact_pass.h"
 #include "core/passes/jump_flood_pass.h"
 #include "core/passes/reference_pass.h"
 #include "core/passes/resolve_pass.h"
@@ -33,6 +35,13 @@ double ms_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+// Processor time of all threads of this process.
+double cpu_ms_now() {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return 1e3 * double(time.tv_sec) + 1e-6 * double(time.tv_nsec);
+}
+
 // Records each pass's time and size while the frame runs. Bands of one pass add up in one record.
 class Recorder {
 public:
@@ -41,11 +50,12 @@ public:
     template <class Run>
     void pass(const std::string& name, glm::ivec2 extent, Run&& run) {
         const Clock::time_point start = Clock::now();
+        const double cpu_start = cpu_ms_now();
         timer_.mark();
         const PassWork work = run();
         timer_.mark();
         gl::check_errors(name.c_str());
-        PassStats& stats = add(name, extent, ms_since(start));
+        PassStats& stats = add(name, extent, ms_since(start), cpu_ms_now() - cpu_start);
         stats.dispatches += static_cast<std::uint64_t>(work.dispatches);
         stats.rays += work.rays;
         stats.bytes += work.bytes;
@@ -55,8 +65,9 @@ public:
     template <class Run>
     void host(const std::string& name, glm::ivec2 extent, Run&& run) {
         const Clock::time_point start = Clock::now();
+        const double cpu_start = cpu_ms_now();
         run();
-        add(name, extent, ms_since(start));
+        add(name, extent, ms_since(start), cpu_ms_now() - cpu_start);
     }
 
     std::vector<PassStats> finish() {
@@ -66,7 +77,7 @@ public:
     }
 
 private:
-    PassStats& add(const std::string& name, glm::ivec2 extent, double wall_ms) {
+    PassStats& add(const std::string& name, glm::ivec2 extent, double wall_ms, double cpu_ms) {
         auto found = std::find_if(passes_.begin(), passes_.end(), [&](const PassStats& p) { return p.name == name; });
         if (found == passes_.end()) {
             passes_.emplace_back();
@@ -76,6 +87,7 @@ private:
         }
         found->height += extent.y;
         found->wall_ms += wall_ms;
+        found->cpu_ms += cpu_ms;
         return *found;
     }
 
@@ -129,6 +141,7 @@ struct Renderer::Impl {
           cascade(options.shader_dir),
           resolve(options.shader_dir),
           reference(options.shader_dir),
+          exact(options.shader_dir),
           compose(options.shader_dir) {
         const gl::ContextInfo& gl_info = context.info();
         info.kind = gl_info.software ? "cpu" : "gpu";
@@ -166,6 +179,7 @@ struct Renderer::Impl {
     CascadePass cascade;
     ResolvePass resolve;
     ReferencePass reference;
+    ExactPass exact;
     ComposePass compose;
     DeviceInfo info;
     DeviceLimits limits;
@@ -201,6 +215,9 @@ RenderResult Renderer::Impl::render(const Scene& scene) {
     if (plan.reference.rays > 0)
         record.pass("reference", plan.canvas,
                     [&] { return reference.run(plan, scene.sky, buffers, field, settings, radiance); });
+    if (plan.exact.used)
+        exact.run(plan, scene.sky, field, settings,
+                  [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, radiance);
     if (plan.resolve)
         record.pass("resolve", plan.canvas, [&] {
             gl::Texture2D resolved;

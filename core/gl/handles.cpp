@@ -17,6 +17,7 @@ std::size_t texel_bytes(GLenum format) {
         case GL_RGBA8:
         case GL_R32F:
         case GL_R32I:
+        case GL_R32UI:
         case GL_RG16I: return 4;
         default: return 0;
     }

@@ -77,13 +77,25 @@ int ComputeProgram::rows_per_band(glm::ivec2 extent, std::size_t slice) const {
     return static_cast<int>(groups) * group_.y;
 }
 
+// What the next pass may read: images, textures, storage, and counts of groups.
+constexpr GLbitfield kPassBarrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                                    GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT;
+
 void ComputeProgram::run(const void* params, std::size_t bytes, glm::ivec2 extent) {
     params_.write(params, bytes);
     params_.bind(0);
     glUseProgram(id_);
     glDispatchCompute(static_cast<GLuint>((extent.x + group_.x - 1) / group_.x),
                       static_cast<GLuint>((extent.y + group_.y - 1) / group_.y), 1);
-    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    glMemoryBarrier(kPassBarrier);
+}
+
+void ComputeProgram::run_indirect(const void* params, std::size_t bytes, std::size_t offset) {
+    params_.write(params, bytes);
+    params_.bind(0);
+    glUseProgram(id_);
+    glDispatchComputeIndirect(static_cast<GLintptr>(offset));
+    glMemoryBarrier(kPassBarrier);
 }
 
 }  // namespace penumbra::gl

@@ -160,7 +160,8 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
     plan.canvas = {scene.canvas.width, scene.canvas.height};
     plan.grid = plan_grid(scene.canvas);
     const bool brute_force = scene.render.method == "reference";
-    plan.method = brute_force ? "reference" : "rc";
+    const bool exact = scene.render.method == "exact";
+    plan.method = brute_force ? "reference" : exact ? "exact" : "rc";
     plan.method_reason = scene.render.method == "auto" ? "the fastest method of this version" : "asked for";
 
     double peak = brightest(scene.sky);
@@ -196,6 +197,8 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
     const CascadeSettings settings = cascade_settings(scene.render.quality);
     if (brute_force)
         plan.reference = plan_reference(scene, limits);
+    else if (exact)
+        plan.exact = plan_exact(scene, pack_outline(scene, 1.0), plan.canvas, limits.software);
     else
         plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
     if (peak <= 0 && skip) {
@@ -203,6 +206,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
         leave_out(brute_force ? "rays" : "cascades", "nothing emits light", pixels * rays);
         plan.cascades.clear();
         plan.reference = {};
+        plan.exact = {};
     }
     const bool resolved = settings.spacing_px == 1.0 && settings.base_tiles == 1;
     plan.resolve = !plan.cascades.empty() && !(resolved && skip);

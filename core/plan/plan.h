@@ -10,6 +10,7 @@
 #include <glm/vec2.hpp>
 
 #include "core/plan/device_limits.h"
+#include "core/plan/exact_plan.h"
 #include "core/render_stats.h"
 #include "core/scene/scene.h"
 
@@ -63,6 +64,7 @@ struct Plan {
     std::vector<int> jump_steps;        // of jump flooding, empty without bitmaps
     std::vector<CascadePlan> cascades;  // [0] is the nearest; empty when no light can arrive
     ReferencePlan reference;
+    ExactPlan exact;                    // of the method `exact`
     bool resolve = false;               // false: cascade 0 already is the mean radiance per pixel
     bool half_floats = false;           // cascades in 16 bits, emission scaled to [0, 1]
     double radiance_scale = 1;          // emission is divided by this before it is packed

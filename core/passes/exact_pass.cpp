@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: MIT
+#include "core/passes/exact_pass.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/device_error.h"
+#include "glsl/exact.h"
+
+namespace penumbra {
+namespace {
+
+constexpr int kLevels = 5;  // cells of 16, 8, 4, 2 and 1 pixels
+
+// Iterations that the solver spends on one point in one dispatch at most (exact_solve.comp).
+constexpr std::uint64_t kMostWork = 30'000;
+
+int divided_up(int a, int b) { return (a + b - 1) / b; }
+
+gl::StorageBuffer at_least(gl::StorageBuffer buffer, GLenum format, std::size_t bytes) {
+    if (buffer && buffer.bytes() >= bytes) return buffer;
+    return gl::StorageBuffer(format, bytes);
+}
+
+gl::BufferTexture sector_table(const ExactPlan& plan) {
+    std::vector<glm::vec4> table;
+    for (int s = 0; s < plan.sectors; ++s) {
+        const double angle = plan.first_axis + 2 * std::numbers::pi * s / plan.sectors;
+        table.push_back(glm::vec4(std::cos(angle), std::sin(angle), angle, 0));
+    }
+    return gl::BufferTexture(GL_RGBA32F, table.data(), table.size() * sizeof(glm::vec4));
+}
+
+// Where the points of one level are listed, and how many of them.
+struct LevelPoints {
+    std::size_t first = 0;        // in the list of points
+    std::size_t of_tile = 0;      // room for each tile
+    std::size_t first_count = 0;  // in the counters
+
+    void write_to(glsl::ExactParams& params) const {
+        params.first_point = static_cast<int>(first);
+        params.tile_points = static_cast<int>(of_tile);
+        params.first_count = static_cast<int>(first_count);
+    }
+};
+
+}  // namespace
+
+// What the steps of one frame share.
+struct ExactPass::Band {
+    glsl::ExactParams params{};
+    gl::BufferTexture root_entries, root_ids, piece_light, sectors, sky;
+    gl::Texture2D value, slope_x, slope_y, state, leaf;
+    glm::ivec2 coarse_tiles{0};
+    std::array<LevelPoints, kLevels> levels{};
+    bool always_finishes = false;
+    int rows = 0;
+};
+
+ExactPass::ExactPass(const std::string& shader_dir)
+    : lists_("exact_lists.comp", sizeof(glsl::ExactParams), shader_dir),
+      solve_("exact_solve.comp", sizeof(glsl::ExactParams), shader_dir),
+      split_("exact_split.comp", sizeof(glsl::ExactParams), shader_dir),
+      gather_("exact_jobs.comp", sizeof(glsl::ExactParams), shader_dir),
+      mean_("exact_mean.comp", sizeof(glsl::ExactParams), shader_dir),
+      fill_("exact_fill.comp", sizeof(glsl::ExactParams), shader_dir),
+      counters_(GL_R32UI, 64) {}
+
+std::size_t ExactPass::bytes() const {
+    return coarse_heads_.bytes() + coarse_entries_.bytes() + coarse_ids_.bytes() + heads_.bytes() + entries_.bytes() +
+           ids_.bytes() + points_.bytes() + counters_.bytes() + means_.bytes();
+}
+
+PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
+    const ExactPlan& exact = plan.exact;
+    PassWork work;
+    const auto lists_of = [&](glm::ivec2 tiles) {
+        return static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y) * static_cast<std::size_t>(exact.sectors);
+    };
+    // One level of lists: from a parent's, or from the list of all pieces. Lists claim room as they are made; when it was
+    // too little, all is made again with more.
+    const auto make = [&](glm::ivec2 tiles, int tile_px, int ratio, bool wide, gl::StorageBuffer& heads,
+                          gl::StorageBuffer& entries, gl::StorageBuffer& ids) {
+        heads = at_least(std::move(heads), GL_RGBA32UI, lists_of(tiles) * (wide ? 32 : 16));
+        std::size_t capacity = std::max<std::size_t>(entries.bytes() / 16, 4 * lists_of(tiles) + 1024);
+        for (;;) {
+            entries = at_least(std::move(entries), GL_RGBA32F, capacity * 16);
+            ids = at_least(std::move(ids), GL_R32UI, capacity * 4);
+            const std::uint32_t zero[2] = {};
+            counters_.write(0, zero, sizeof(zero));
+            glsl::ExactParams params = band.params;
+            params.tiles = tiles;
+            params.tile_px = tile_px;
+            params.parent_ratio = ratio;
+            params.parent_tiles = band.coarse_tiles;
+            params.capacity = static_cast<int>(capacity);
+            params.wide = wide ? 1 : 0;
+            params.extent = {tiles.x, tiles.y * exact.sectors};
+            if (ratio == 0) {
+                band.root_entries.bind_texture(glsl::kExactEntriesUnit);
+                band.root_ids.bind_texture(glsl::kExactIdsUnit);
+            } else {
+                coarse_heads_.bind_texture(glsl::kExactHeadsUnit);
+                coarse_entries_.bind_texture(glsl::kExactEntriesUnit);
+                coarse_ids_.bind_texture(glsl::kExactIdsUnit);
+            }
+            band.sectors.bind_texture(glsl::kExactSectorsUnit);
+            counters_.bind_storage(glsl::kExactCountersStorage);
+            heads.bind_storage(glsl::kExactHeadsStorage);
+            entries.bind_storage(glsl::kExactEntriesStorage);
+            ids.bind_storage(glsl::kExactIdsStorage);
+            work.dispatches += lists_.dispatch(params, params.extent);
+            std::uint32_t used[2] = {};
+            counters_.read(0, used, sizeof(used));if(getenv("DBG"))fprintf(stderr,"lists %dx%d ratio %d used %u work %u cap %zu counts %d %d %d %d lights %d %d %d %d\n",tiles.x,tiles.y,ratio,used[0],used[1],capacity,params.root_counts.x,params.root_counts.y,params.root_counts.z,params.root_counts.w,params.root_lights.x,params.root_lights.y,params.root_lights.z,params.root_lights.w);
+            if (used[0] <= capacity) {
+                work.bytes += used[0] * std::size_t(20) + heads.bytes();
+                return used[1];
+            }
+            capacity = used[0] + std::size_t(used[0]) / 4;
+            if (capacity * 16 > (std::size_t(1) << 27))
+                throw DeviceError("The scene is too dense for the method 'exact': its lists of what may be seen need " +
+                                  std::to_string(capacity >> 16) + " MiB.");
+        }
+    };
+    int ratio = 0;
+    if (exact.coarse_tile > 0) {
+        band.coarse_tiles = {divided_up(plan.canvas.x, exact.coarse_tile), divided_up(band.rows, exact.coarse_tile)};
+        make(band.coarse_tiles, exact.coarse_tile, 0, true, coarse_heads_, coarse_entries_, coarse_ids_);
+        ratio = exact.coarse_tile / glsl::kExactTile;
+    }
+    const std::uint32_t list_work = make(band.params.tiles, glsl::kExactTile, ratio, false, heads_, entries_, ids_);
+    if(getenv("DBGH")){ std::vector<std::uint32_t> h(4*lists_of(band.params.tiles)); heads_.read(0,h.data(),h.size()*4); double n[4]={},l[4]={}; int open=0,dark=0,mx=0; std::size_t at=0; for(std::size_t i=0;i<h.size();i+=4){ if(h[i]==glsl::kExactOpen) ++open; else if(h[i]==glsl::kExactDark) ++dark; else { int c[4]={int(h[i+1]&0xffff),int(h[i+2]&0xffff),int(h[i+3]&0xff),int((h[i+3]>>16)&0xff)}; int t=0; for(int k=0;k<4;++k){n[k]+=c[k]; t+=c[k];} if(t>mx){mx=t;at=i/4;} l[0]+=h[i+1]>>16; } } double L=h.size()/4; fprintf(stderr,"lists %g open %d dark %d avg %.2f %.2f %.2f %.2f max %d at tile %zu %zu sector %zu\n",L,open,dark,n[0]/L,n[1]/L,n[2]/L,n[3]/L,mx,(at/exact.sectors)%band.params.tiles.x,(at/exact.sectors)/band.params.tiles.x,at%exact.sectors);}
+    band.always_finishes = std::uint64_t(list_work) * static_cast<std::uint64_t>(exact.sectors) < kMostWork;
+    return work;
+}
+
+PassWork ExactPass::solve(const DistanceField& field, Band& band, int level) {
+    PassWork work;
+    glsl::ExactParams params = band.params;
+    params.level = level;
+    band.levels[static_cast<std::size_t>(level)].write_to(params);
+    params.all_points = level == 0 ? 1 : 0;
+    params.with_slopes = level < kLevels - 1 ? 1 : 0;
+    const int tiles = params.tiles.x * params.tiles.y;
+    params.extent = {tiles, 1};
+    if (level > 0) {
+        jobs_.bind_storage(glsl::kExactPointsStorage);
+        counters_.bind_storage(glsl::kExactCountersStorage);
+        work.dispatches += gather_.dispatch(params, params.extent);
+    }
+    band.value.bind_image(glsl::kExactValueImage, GL_READ_WRITE);
+    band.slope_x.bind_image(glsl::kExactSlopeXImage, GL_READ_WRITE);
+    band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_WRITE);
+    field.distance.bind_texture(glsl::kExactDistanceUnit);
+    heads_.bind_texture(glsl::kExactHeadsUnit);
+    entries_.bind_texture(glsl::kExactEntriesUnit);
+    ids_.bind_texture(glsl::kExactIdsUnit);
+    points_.bind_texture(glsl::kExactPointsUnit);
+    jobs_.bind_texture(glsl::kExactJobsUnit);
+    band.piece_light.bind_texture(glsl::kExactPieceLightUnit);
+    band.sectors.bind_texture(glsl::kExactSectorsUnit);
+    band.sky.bind_texture(glsl::kExactSkyUnit);
+    counters_.bind_storage(glsl::kExactCountersStorage);
+    counters_.bind_indirect();
+    for (;;) {
+        if (level == 0)
+            solve_.dispatch(params, params.extent);
+        else
+            solve_.dispatch_indirect(params, 4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1));
+        ++work.dispatches;
+        if (band.always_finishes) break;
+        std::uint32_t unfinished = 0;
+        counters_.read(4 * glsl::kExactCountUnfinished, &unfinished, sizeof(unfinished));
+        if (unfinished == 0) break;
+        unfinished = 0;
+        counters_.write(4 * glsl::kExactCountUnfinished, &unfinished, sizeof(unfinished));
+        params.continues = 1;
+    }
+    return work;
+}
+
+void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings,
+                    const Record& record, gl::Texture2D& out) {
+    const ExactPlan& exact = plan.exact;
+    const PackedOutline& outline = exact.outline;
+    Band band;
+    band.root_entries = gl::BufferTexture(GL_RGBA32F, outline.entries.data(), outline.entries.size() * 16);
+    band.root_ids = gl::BufferTexture(GL_R32UI, outline.ids.data(), outline.ids.size() * 4);
+    band.piece_light = gl::BufferTexture(GL_RGBA32F, outline.light.data(), outline.light.size() * 16);
+    band.sectors = sector_table(exact);
+    const std::vector<glm::vec4> nodes =
+        exact.sky_nodes > 0 ? sky_nodes(sky, exact.sky_nodes, plan.radiance_scale) : std::vector<glm::vec4>();
+    band.sky = gl::BufferTexture(GL_RGBA32F, nodes.data(), nodes.size() * 16);
+
+    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.canvas);
+    glsl::ExactParams& params = band.params;
+    params.canvas = plan.canvas;
+    params.border = plan.grid.border;
+    params.sectors = exact.sectors;
+    params.tan_half = static_cast<float>(std::tan(std::numbers::pi / exact.sectors));
+    params.sky = glm::vec4(glm::vec3(sky.radiance / plan.radiance_scale), 0.0f);
+    params.sky_kind = exact.sky_nodes > 0 ? 2 : sky.radiance != Colour(0) ? 1 : 0;
+    params.sky_nodes = exact.sky_nodes;
+    params.tolerance = static_cast<float>(exact.settings.tolerance);
+    params.kink_cell = exact.settings.kink_cell;
+    params.strict_dark = exact.settings.strict_dark ? 1 : 0;
+    params.floor_share = 0.05f;
+    params.root_counts = {outline.counts[0], outline.counts[1], outline.counts[2], outline.counts[3]};
+    params.root_lights = {outline.lights[0], outline.lights[1], outline.lights[2], outline.lights[3]};
+
+    for (int row = 0; row < plan.canvas.y; row += exact.band_rows) {
+        band.rows = std::min(exact.band_rows, plan.canvas.y - row);
+        params.first_row = row;
+        params.tiles = {divided_up(plan.canvas.x, glsl::kExactTile), divided_up(band.rows, glsl::kExactTile)};
+        const std::size_t tiles = static_cast<std::size_t>(params.tiles.x) * static_cast<std::size_t>(params.tiles.y);
+        std::size_t room = 0;
+        for (std::size_t level = 0; level < kLevels; ++level) {
+            band.levels[level] = {room, exact_level_points(static_cast<int>(level)), glsl::kExactCountTiles + level * tiles};
+            if (level > 0) room += tiles * band.levels[level].of_tile;
+        }
+        points_ = at_least(std::move(points_), GL_R32UI, room * 4);
+        jobs_ = at_least(std::move(jobs_), GL_R32UI, tiles * (1 + band.levels.back().of_tile / 4) * 4);
+        std::vector<std::uint32_t> zero(glsl::kExactCountTiles + kLevels * tiles);
+        for (std::size_t level = 0; level < kLevels; ++level)  // groups along y and z
+            zero[glsl::kExactCountLevel + 4 * level + 2] = zero[glsl::kExactCountLevel + 4 * level + 3] = 1;
+        counters_ = at_least(std::move(counters_), GL_R32UI, zero.size() * 4);
+        counters_.write(0, zero.data(), zero.size() * 4);
+        means_ = at_least(std::move(means_), GL_R32F, (static_cast<std::size_t>(params.tiles.x) + 1) * 4);
+        record("exact lists", {params.tiles.x, params.tiles.y * exact.sectors}, [&] { return make_lists(plan, band); });
+
+        const glm::ivec2 blocks = params.tiles * glsl::kExactBlock;
+        band.value = settings.take(GL_RGBA32F, blocks);
+        band.slope_x = settings.take(GL_RGBA32F, blocks);
+        band.slope_y = settings.take(GL_RGBA32F, blocks);
+        band.state = settings.take(GL_R32UI, blocks);
+        band.leaf = settings.take(GL_R32UI, params.tiles * glsl::kExactTile);
+        const std::uint32_t unasked = 0, whole = glsl::kExactTile;
+        band.state.fill(GL_RED_INTEGER, GL_UNSIGNED_INT, &unasked);
+        band.leaf.fill(GL_RED_INTEGER, GL_UNSIGNED_INT, &whole);
+
+        record("exact points 16", {4 * params.tiles.x, params.tiles.y}, [&] { return solve(field, band, 0); });
+        record("exact mean", {params.tiles.x, 1}, [&] {
+            PassWork work;
+            band.value.bind_texture(glsl::kExactValueUnit);
+            means_.bind_texture(glsl::kExactSkyUnit);
+            means_.bind_storage(glsl::kExactPointsStorage);
+            for (int phase = 0; phase < 2; ++phase) {
+                glsl::ExactParams p = params;
+                p.level = phase;
+                p.extent = {phase == 0 ? params.tiles.x : 1, 1};
+                work.dispatches += mean_.dispatch(p, p.extent);
+            }
+            return work;
+        });
+        for (int level = 0; level + 1 < kLevels; ++level) {
+            const int cell = glsl::kExactTile >> level;
+            record("exact cells", params.tiles << level, [&] {
+                PassWork work;
+                field.distance.bind_texture(glsl::kExactDistanceUnit);
+                band.value.bind_texture(glsl::kExactValueUnit);
+                band.slope_x.bind_texture(glsl::kExactSlopeXUnit);
+                band.slope_y.bind_texture(glsl::kExactSlopeYUnit);
+                band.state.bind_image(glsl::kExactStateImage, GL_READ_WRITE);
+                band.leaf.bind_image(glsl::kExactLeafImage, GL_READ_WRITE);
+                points_.bind_storage(glsl::kExactPointsStorage);
+                counters_.bind_storage(glsl::kExactCountersStorage);
+                means_.bind_texture(glsl::kExactSkyUnit);
+                glsl::ExactParams p = params;
+                p.level = level;
+                p.cell = cell;
+                p.extent = params.tiles << level;
+                band.levels[static_cast<std::size_t>(level) + 1].write_to(p);
+                work.dispatches = split_.dispatch(p, p.extent);
+                return work;
+            });
+            const std::string name = "exact points " + std::to_string(cell / 2);
+            record(name.c_str(), blocks, [&] { return solve(field, band, level + 1); });
+        }
+        record("exact fill", {plan.canvas.x, band.rows}, [&] {
+            PassWork work;
+            band.value.bind_texture(glsl::kExactValueUnit);
+            band.slope_x.bind_texture(glsl::kExactSlopeXUnit);
+            band.slope_y.bind_texture(glsl::kExactSlopeYUnit);
+            band.leaf.bind_texture(glsl::kExactLeafUnit);
+            out.bind_image(glsl::kExactValueImage, GL_WRITE_ONLY);
+            glsl::ExactParams p = params;
+            p.extent = {plan.canvas.x, band.rows};
+            work.dispatches = fill_.dispatch(p, p.extent, settings.pixels);
+            return work;
+        });
+        std::vector<std::uint32_t> counted(zero.size());
+        counters_.read(0, counted.data(), counted.size() * 4);
+        if (counted[glsl::kExactCountSpent] != 0)
+            throw DeviceError("The scene is too dense for the method 'exact' on this device: at " +
+                              std::to_string(counted[glsl::kExactCountSpent]) + " points its loops ran out of iterations.");
+        points_solved_ += 4 * tiles + std::accumulate(counted.begin() + glsl::kExactCountTiles, counted.end(), std::size_t(0));
+        if (getenv("DBG")) for (std::size_t level = 1; level < kLevels; ++level) { std::size_t n=0; for (std::size_t i=0;i<tiles;++i) n+=counted[glsl::kExactCountTiles+level*tiles+i]; fprintf(stderr,"points level %zu: %zu\n",level,n);}
+        settings.give(std::move(band.value));
+        settings.give(std::move(band.slope_x));
+        settings.give(std::move(band.slope_y));
+        settings.give(std::move(band.state));
+        settings.give(std::move(band.leaf));
+    }
+}
+
+}  // namespace penumbra

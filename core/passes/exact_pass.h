@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/gl/program.h"
+#include "core/gl/storage_buffer.h"
+#include "core/passes/frame.h"
+#include "core/plan/plan.h"
+
+namespace penumbra {
+
+// Reads the distance. Writes the mean radiance of each pixel by the method `exact`: lists of what each tile may see, the
+// light at corners of cells, cells split where that is not enough, and what lies between.
+// Keeps its buffers from frame to frame.
+class ExactPass {
+public:
+    explicit ExactPass(const std::string& shader_dir);
+
+    // `record(name, extent, run)` times each step: lists, points, cells, fill.
+    using Record = std::function<void(const char* name, glm::ivec2 extent, const std::function<PassWork()>& run)>;
+    void run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings,
+             const Record& record, gl::Texture2D& out);
+
+    std::size_t bytes() const;
+
+private:
+    struct Band;
+    PassWork make_lists(const Plan& plan, Band& band);
+    PassWork solve(const DistanceField& field, Band& band, int level);
+
+    gl::ComputeProgram lists_;
+    gl::ComputeProgram solve_;
+    gl::ComputeProgram split_;
+    gl::ComputeProgram gather_;
+    gl::ComputeProgram mean_;
+    gl::ComputeProgram fill_;
+    gl::StorageBuffer coarse_heads_, coarse_entries_, coarse_ids_;
+    gl::StorageBuffer heads_, entries_, ids_;
+    gl::StorageBuffer points_, jobs_, counters_, means_;
+    std::size_t points_solved_ = 0;
+};
+
+}  // namespace penumbra

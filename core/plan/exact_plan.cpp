@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "core/plan/exact_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "glsl/exact.h"
+
+namespace penumbra {
+
+ExactSettings exact_settings(Quality quality) {
+    // Points of the measured front (docs/benchmarks.md).
+    switch (quality) {
+        case Quality::draft: return {.tolerance = 1e-2, .kink_cell = 4, .strict_dark = false, .every_pixel = false};
+        case Quality::standard: return {.tolerance = 2e-3, .kink_cell = 2, .strict_dark = true, .every_pixel = false};
+        case Quality::high: return {.tolerance = 2e-4, .kink_cell = 1, .strict_dark = true, .every_pixel = false};
+    }
+    return {};
+}
+
+ExactPlan plan_exact(const Scene& scene, PackedOutline outline, glm::ivec2 canvas, bool software) {
+    ExactPlan plan;
+    plan.used = true;
+    plan.settings = exact_settings(scene.render.quality);
+    // A sector's list is asked once for each of its edges: more pieces want narrower sectors.
+    const std::size_t pieces = outline.pieces;
+    plan.sectors = pieces <= 4 ? 8 : pieces <= 24 ? 16 : pieces <= 400 ? 32 : 64;
+    plan.first_axis = 0.0927;
+    plan.coarse_tile = pieces > 48 ? 4 * glsl::kExactTile : 0;
+    plan.sky_nodes = scene.sky.gradient.empty() ? 0 : 2048;
+    const int most_pixels = software ? 1 << 21 : 1 << 23;
+    const int rows = std::max(most_pixels / std::max(canvas.x, 1), 1);
+    const int unit = plan.coarse_tile > 0 ? plan.coarse_tile : glsl::kExactTile;
+    plan.band_rows = std::max(rows / unit, 1) * unit;
+    plan.outline = std::move(outline);
+    return plan;
+}
+
+std::size_t exact_level_points(int level) {
+    const auto all = [](int of) {
+        const auto side = static_cast<std::size_t>(1 << of) + 1;
+        return side * side;
+    };
+    return level == 0 ? all(0) : all(level) - all(level - 1);
+}
+
+}  // namespace penumbra

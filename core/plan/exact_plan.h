@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// What the method `exact` does for a scene: its outline, how directions are divided, where it solves and where it
+// interpolates (docs/methods/exact-gpu.md).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <glm/ext/vector_int2.hpp>
+
+#include "core/plan/pack_outline.h"
+#include "core/scene/scene.h"
+
+namespace penumbra {
+
+// A point of the method's time/error curve.
+struct ExactSettings {
+    double tolerance = 0;       // of the interpolation, relative to the light there and a share of the mean
+    int kink_cell = 1;          // px: cells larger than this are split where a shadow's edge may cross them
+    bool strict_dark = false;   // pixels between light and dark are always solved
+    bool every_pixel = false;   // nothing is interpolated
+};
+ExactSettings exact_settings(Quality quality);
+
+struct ExactPlan {
+    bool used = false;
+    PackedOutline outline;
+    ExactSettings settings;
+    int sectors = 0;            // of direction, around the circle
+    double first_axis = 0;      // angle of the first sector's axis, radians: no common angle lies on a border
+    int coarse_tile = 0;        // px: lists of such tiles are made first; 0: there are few pieces
+    int band_rows = 0;          // pixels: the canvas is solved this many rows at a time, a multiple of the tile
+    int sky_nodes = 0;          // 0: a constant sky, or none
+};
+
+ExactPlan plan_exact(const Scene& scene, PackedOutline outline, glm::ivec2 canvas, bool software);
+
+// How many points of a tile the level of this number adds at most: level 0 is the tile's corners, each further level
+// halves the cells, the last are pixels.
+std::size_t exact_level_points(int level);
+
+}  // namespace penumbra

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include "core/plan/pack_outline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <map>
+#include <set>
+#include <unordered_map>
+
+#include "core/plan/pack.h"
+#include "core/reference/boundary.h"
+#include "core/reference/sky.h"
+#include "glsl/exact.h"
+
+namespace penumbra {
+namespace {
+
+using reference::Piece;
+
+constexpr std::size_t kMostPieces = 500'000;
+
+// Gives corners that are equal but for rounding the same single-precision coordinates.
+class Corners {
+public:
+    explicit Corners(const PixelFrame& frame) : frame_(frame) {}
+
+    glm::vec2 at(Point p) {
+        const glm::dvec2 px = frame_.point(p);
+        const std::int64_t x = cell(px.x), y = cell(px.y);
+        for (std::int64_t dy = -1; dy <= 1; ++dy) {
+            for (std::int64_t dx = -1; dx <= 1; ++dx) {
+                const auto found = seen_.find(key(x + dx, y + dy));
+                if (found == seen_.end()) continue;
+                for (const glm::dvec2 other : found->second)
+                    if (std::abs(other.x - px.x) < kSame && std::abs(other.y - px.y) < kSame) return glm::vec2(other);
+            }
+        }
+        seen_[key(x, y)].push_back(px);
+        return glm::vec2(px);
+    }
+
+private:
+    static constexpr double kSame = 1e-6;  // px
+    static std::int64_t cell(double v) { return static_cast<std::int64_t>(std::floor(v * 4096)); }
+    static std::uint64_t key(std::int64_t x, std::int64_t y) {
+        return static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15u + static_cast<std::uint64_t>(y);
+    }
+
+    const PixelFrame& frame_;
+    std::unordered_map<std::uint64_t, std::vector<glm::dvec2>> seen_;
+};
+
+enum class Kind { straight, disc, arc, ellipse };
+
+bool is_round(const Piece& piece) {
+    const double u = reference::length_squared(piece.u), v = reference::length_squared(piece.v);
+    return std::abs(u - v) <= 1e-12 * u && std::abs(reference::dot(piece.u, piece.v)) <= 1e-12 * u;
+}
+
+Kind kind_of(const Piece& piece) {
+    if (!piece.is_arc) return Kind::straight;
+    if (!is_round(piece)) return Kind::ellipse;
+    return piece.is_full ? Kind::disc : Kind::arc;
+}
+
+// Circles of which only arcs can be seen, but which may be taken whole: what is hidden of them lies inside shapes of the
+// same light, as the round end of a stroke does. A whole circle is one entry that is cheap to ask, and hides more.
+class WholeCircles {
+public:
+    explicit WholeCircles(const reference::Boundary& boundary) : boundary_(boundary) {
+        // Which lights meet at each corner.
+        for (const Piece& piece : boundary.pieces()) {
+            if (piece.is_full) continue;
+            for (const Point end : {piece.a, piece.b}) {
+                const auto [at, is_new] = corners_.try_emplace(corner(end), piece.material);
+                if (!is_new && !same_light(at->second, piece.material)) at->second = kMixed;
+            }
+        }
+        for (std::size_t i = 0; i < boundary.pieces().size(); ++i) {
+            const Piece& piece = boundary.pieces()[i];
+            if (kind_of(piece) != Kind::arc) continue;
+            std::vector<std::size_t>& arcs = circles_[circle(piece)];
+            arcs.push_back(i);
+        }
+        for (const auto& [key, arcs] : circles_) {
+            const int light = boundary.pieces()[arcs.front()].material;
+            bool whole = true;
+            for (const std::size_t i : arcs) {
+                const Piece& piece = boundary.pieces()[i];
+                whole = whole && same_light(piece.material, light) && corners_.at(corner(piece.a)) != kMixed &&
+                        corners_.at(corner(piece.b)) != kMixed;
+            }
+            if (!whole) continue;
+            firsts_.insert(arcs.front());
+            for (const std::size_t i : arcs) members_.insert(i);
+        }
+    }
+
+    bool is_part(std::size_t piece) const { return members_.contains(piece); }
+    bool is_first(std::size_t piece) const { return firsts_.contains(piece); }
+
+private:
+    static constexpr int kMixed = -1;
+    using Key = std::array<std::int64_t, 3>;
+
+    bool same_light(int a, int b) const {
+        if (a == kMixed || b == kMixed) return false;
+        const auto& all = boundary_.materials();
+        return all[std::size_t(a)].emission == all[std::size_t(b)].emission;
+    }
+    Key corner(Point p) const { return {at(p.x), at(p.y), 0}; }
+    Key circle(const Piece& piece) const {
+        return {at(piece.center.x), at(piece.center.y), at(std::sqrt(reference::length_squared(piece.u)))};
+    }
+    // Coordinates within rounding of one another fall together, but for those on a border, which stay apart: then the arcs
+    // are kept.
+    std::int64_t at(double v) const { return std::llround(v / (64 * boundary_.tolerance())); }
+
+    const reference::Boundary& boundary_;
+    std::map<Key, int> corners_;
+    std::map<Key, std::vector<std::size_t>> circles_;
+    std::set<std::size_t> members_, firsts_;
+};
+
+}  // namespace
+
+PackedOutline pack_outline(const Scene& scene, double radiance_scale) {
+    const reference::Boundary boundary(scene, kMostPieces, false);
+    PackedOutline out;
+    if (!boundary.problems().empty()) {
+        out.fits = false;
+        return out;
+    }
+    const PixelFrame frame(scene.canvas);
+    Corners corners(frame);
+    const double scale = frame.pixels_per_unit;
+    const auto vec = [](glm::dvec2 a, glm::dvec2 b) { return glm::vec4(glm::vec2(a), glm::vec2(b)); };
+    const WholeCircles whole(boundary);
+    // Kind by kind, what emits first.
+    for (const Kind kind : {Kind::straight, Kind::disc, Kind::arc, Kind::ellipse}) {
+        for (const bool emits : {true, false}) {
+            for (std::size_t i = 0; i < boundary.pieces().size(); ++i) {
+                const Piece& piece = boundary.pieces()[i];
+                const reference::Material& material = boundary.material_of(piece);
+                if (whole.is_part(i) && !whole.is_first(i)) continue;
+                const Kind own = whole.is_part(i) ? Kind::disc : kind_of(piece);
+                if (own != kind || (material.emission != Colour(0)) != emits) continue;
+                const std::size_t first = out.entries.size();
+                const glm::vec4 ends(piece.is_full ? glm::vec2(0) : corners.at(piece.a),
+                                     piece.is_full ? glm::vec2(0) : corners.at(piece.b));
+                const glm::dvec2 centre = frame.point(piece.center);
+                const double reach =
+                    scale * std::sqrt(std::max(reference::length_squared(piece.u), reference::length_squared(piece.v)));
+                switch (kind) {
+                    case Kind::straight: out.entries.push_back(ends); break;
+                    case Kind::disc: out.entries.push_back(vec(centre, {reach, 0})); break;
+                    case Kind::arc:
+                        out.entries.push_back(vec(centre, {reach, 0}));
+                        out.entries.push_back(ends);
+                        break;
+                    case Kind::ellipse:
+                        out.entries.push_back(vec(centre, {reach, piece.is_full ? 1 : 0}));
+                        out.entries.push_back(vec(piece.inverse_u / scale, piece.inverse_v / scale));
+                        out.entries.push_back(ends);
+                        out.entries.push_back(vec(piece.u * scale, piece.v * scale));
+                        break;
+                }
+                out.ids.resize(out.entries.size(), static_cast<std::uint32_t>(out.light.size()));
+                std::fill(out.ids.begin() + static_cast<std::ptrdiff_t>(first), out.ids.end(),
+                          static_cast<std::uint32_t>(out.light.size()));
+                out.light.push_back(glm::vec4(glm::vec3(material.emission / radiance_scale), 0.0f));
+                ++out.counts[static_cast<std::size_t>(kind)];
+                if (emits) ++out.lights[static_cast<std::size_t>(kind)];
+            }
+        }
+    }
+    out.pieces = out.light.size();
+    for (const int count : out.lights) out.emitting += static_cast<std::size_t>(count);
+    return out;
+}
+
+std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scale) {
+    const reference::SkyIntegral integral(sky);
+    std::vector<glm::vec4> table;
+    const double step = 2 * std::numbers::pi / nodes;
+    Colour sum(0);
+    for (int i = 0; i <= nodes; ++i) {
+        table.push_back(glm::vec4(glm::vec3(sum / radiance_scale), 0.0f));
+        table.push_back(glm::vec4(glm::vec3(integral.radiance(i * step) / radiance_scale), 0.0f));
+        sum += integral.integral(i * step, step);
+    }
+    return table;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The scene's outline as the method `exact` reads it (glsl/exact.h): pieces that do not cross, in pixels of the view.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec4.hpp>
+
+#include "core/scene/scene.h"
+
+namespace penumbra {
+
+struct PackedOutline {
+    std::vector<glm::vec4> entries;         // of the one list that holds all pieces
+    std::vector<std::uint32_t> ids;         // of its pieces, one for each texel of entries
+    std::array<int, 4> counts{};            // by kind: straight pieces, discs, arcs, ellipses
+    std::array<int, 4> lights{};            // how many of them emit; they come first of their kind
+    std::vector<glm::vec4> light;           // radiance of each piece, by id
+    std::size_t pieces = 0;
+    std::size_t emitting = 0;
+    bool fits = true;                       // false: too many pieces
+    std::size_t bytes() const { return 16 * (entries.size() + light.size()) + 4 * ids.size(); }
+};
+
+// Emission is divided by `radiance_scale`. Corners that two pieces share stay equal to the last bit.
+PackedOutline pack_outline(const Scene& scene, double radiance_scale);
+
+// Two texels a node, one node more than `nodes`: the integral of the sky's radiance from angle 0 on, and its radiance.
+std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scale);
+
+}  // namespace penumbra

@@ -1,0 +1,111 @@
+#ifndef PENUMBRA_GLSL_EXACT_H
+#define PENUMBRA_GLSL_EXACT_H
+#include "types.h"
+#ifdef __cplusplus
+namespace penumbra::glsl {
+#endif
+
+// The method `exact` (docs/methods/exact-gpu.md): its lists, points and cells.
+const int kExactGroupX = 64;  // Mesa 22 vectorises along x only
+const int kExactGroupY = 1;
+const int kExactSolveGroupX = 32;
+const int kExactParamsBinding = 0;
+
+// A tile is kExactTile pixels across and is solved on its own: its points are the centres of its pixels and, so that every
+// cell has four corners, those of the next column and row.
+const int kExactTile = 16;
+const int kExactBlock = 17;
+
+// Texture units (0 to 3 are the scene's).
+const int kExactDistanceUnit = 4;
+const int kExactHeadsUnit = 5;        // RGBA32UI: one list of each tile and sector; see exact_lists.comp
+const int kExactEntriesUnit = 6;      // RGBA32F: geometry of the pieces of the lists
+const int kExactIdsUnit = 7;          // R32UI: which piece an entry is
+const int kExactPieceLightUnit = 8;   // RGBA32F: radiance of each piece
+const int kExactSectorsUnit = 9;      // RGBA32F: cos and sin of the sector's axis, its angle, unused
+const int kExactSkyUnit = 10;         // RGBA32F: two texels a node: sky integral from angle 0, sky radiance
+const int kExactPointsUnit = 11;      // R32UI: x | y << 8 in the tile, tile by tile
+const int kExactValueUnit = 12;
+const int kExactSlopeXUnit = 13;
+const int kExactSlopeYUnit = 14;
+const int kExactLeafUnit = 15;
+const int kExactJobsUnit = 12;        // R32UI: tile | four points of it << 24
+
+// Images.
+const int kExactValueImage = 0;   // rgb mean radiance, a: signature of what is seen
+const int kExactSlopeXImage = 1;  // rgb its slope along x per pixel, a: bound on its third derivatives
+const int kExactSlopeYImage = 2;  // rgb its slope along y, a: sectors that are done
+const int kExactStateImage = 3;   // R32UI: 1 where a point has been asked for
+const int kExactLeafImage = 4;    // R32UI: at a cell's first pixel: size of the smallest cell there
+
+// Storage.
+const int kExactHeadsStorage = 0;
+const int kExactEntriesStorage = 1;
+const int kExactIdsStorage = 2;
+const int kExactPointsStorage = 3;
+const int kExactCountersStorage = 4;
+
+// Counters, in uints. From kExactCountLevel on, four a level: the solver's jobs, and the groups of its dispatch. From
+// kExactCountTiles on, level by level: how many points each tile asks for.
+const int kExactCountEntries = 0;   // texels of entries that lists reserved
+const int kExactCountWork = 1;      // most loop iterations that one list may take
+const int kExactCountSpent = 2;     // points whose loops ran out
+const int kExactCountUnfinished = 3;  // points that go on in another dispatch
+const int kExactCountLevel = 4;
+const int kExactCountTiles = 24;
+
+// Kinds of pieces, in the order in which a list holds them. Texels of an entry:
+//   straight: a.xy b.xy
+//   disc:     centre.xy radius -
+//   arc:      centre.xy radius - | a.xy b.xy
+//   ellipse:  centre.xy reach whole | rows of the frame | a.xy b.xy | columns of its inverse
+// A list's head: first texel, then counts: straight | emitting ones << 16, discs | emitting ones << 16,
+// arcs | emitting ones << 8 | ellipses << 16 | emitting ones << 24. Emitting entries come first of their kind.
+// A list without entries has the first texel kExactOpen (nothing in sight but the sky) or kExactDark.
+const uint kExactOpen = 0xfffffffeu;
+const uint kExactDark = 0xffffffffu;
+
+struct ExactParams {
+    ivec2 origin;
+    ivec2 extent;
+    ivec2 canvas;
+    ivec2 border;        // grid pixels left of and above the view
+    ivec2 tiles;         // of the lists that are made or read
+    ivec2 parent_tiles;  // of the lists that they are made from
+    int first_row;       // first row of pixels of this band
+    int tile_px;
+    int parent_ratio;    // tiles a parent tile is across; 0: one list for all
+    int sectors;
+    int pad3;
+    int pad4;
+    float tan_half;      // tangent of half a sector
+    int sky_kind;        // 0: none, 1: constant, 2: nodes
+    vec4 sky;
+    int sky_nodes;       // around the circle
+    int cell;            // px
+    int level;
+    int first_point;     // of the level, in the list of points
+    int tile_points;     // of the level, room for each tile
+    int first_count;     // of the level, in the counters
+    int capacity;        // texels of entries
+    int continues;       // goes on where the dispatch before ended
+    int with_slopes;
+    float tolerance;     // of the interpolation, relative
+    int kink_cell;       // cells larger than this are split where what is seen differs
+    float floor_share;   // of the mean radiance, added to what the tolerance is relative to
+    int all_points;      // level 0: every corner of every tile
+    int strict_dark;     // split where some corners are dark and others are not
+    int pad0;
+    int pad1;
+    ivec4 root_counts;   // of the one list of all pieces, by kind
+    ivec4 root_lights;   // the emitting ones among them
+    int wide;            // the lists are for making further lists: heads of two texels
+    int pad2;
+    int pad5;
+    int pad6;
+};
+
+#ifdef __cplusplus
+}
+#endif
+#endif
