@@ -89,7 +89,7 @@ struct ExactParams {
     int first_count;     // of the level, in the counters
     int capacity;        // texels of entries
     int continues;       // goes on where the dispatch before ended
-    int with_slopes;
+    int pad4a;
     float tolerance;     // of the interpolation, relative
     int kink_cell;       // cells larger than this are split where what is seen differs
     float floor_share;   // of the mean radiance, added to what the tolerance is relative to

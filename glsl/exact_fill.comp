@@ -20,8 +20,8 @@ void main() {
     ivec2 tile = at / kExactTile;
     ivec2 block = tile * kExactBlock + corner - tile * kExactTile;
     vec3 sum = vec3(0.0);
-    for (bool solved = h == 1; solved; solved = false) sum = texelFetch(value_texture, block, 0).rgb;
-    for (bool between = h > 1; between; between = false) {
+    if (h == 1) sum = texelFetch(value_texture, block, 0).rgb;
+    if (h > 1) {
         // At the canvas's edges the far corners were moved inwards.
         ivec2 last = params.canvas - 1 - ivec2(0, params.first_row);
         vec2 size = vec2(min(corner + h, last) - corner);

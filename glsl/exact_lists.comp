@@ -15,6 +15,8 @@ layout(std430, binding = kExactEntriesStorage) writeonly buffer Entries { vec4 o
 layout(std430, binding = kExactIdsStorage) writeonly buffer Ids { uint out_ids[]; };
 layout(std430, binding = kExactCountersStorage) buffer Counters { uint counters[]; };
 
+const int kArcs = 1;      // the parent's lists hold arcs
+const int kEllipses = 1;  // and ellipses
 const float kFar = 1e30;
 const float kSlack = 1e-3;  // px: what hides must hide by this much
 
@@ -197,7 +199,7 @@ void main() {
             if (i < disc_lights) light_high = max(light_high, high);
         }
     }
-    for (uint i = 0u; i < arcs; ++i) {
+    if (kArcs != 0) for (uint i = 0u; i < arcs; ++i) {
         vec4 e = texelFetch(entries, int(first_arc + 2u * i));
         vec4 ends = texelFetch(entries, int(first_arc + 2u * i + 1u));
         vec2 c = e.xy - centre;
@@ -206,7 +208,7 @@ void main() {
             if (i < arc_lights) light_high = max(light_high, high);
         }
     }
-    for (uint i = 0u; i < ellipses; ++i) {
+    if (kEllipses != 0) for (uint i = 0u; i < ellipses; ++i) {
         vec4 e = texelFetch(entries, int(first_ellipse + 4u * i));
         vec2 c = e.xy - centre;
         if (round_depths(c, e.z, low, high, hides) && may_be_seen(c, c, e.z, low)) {
@@ -252,7 +254,7 @@ void main() {
             if (i < disc_lights) ++kept_lights.y;
         }
     }
-    for (uint i = 0u; i < arcs; ++i) {
+    if (kArcs != 0) for (uint i = 0u; i < arcs; ++i) {
         uint place = first_arc + 2u * i;
         vec4 e = texelFetch(entries, int(place));
         vec4 ends = texelFetch(entries, int(place + 1u));
@@ -266,7 +268,7 @@ void main() {
             if (i < arc_lights) ++kept_lights.z;
         }
     }
-    for (uint i = 0u; i < ellipses; ++i) {
+    if (kEllipses != 0) for (uint i = 0u; i < ellipses; ++i) {
         uint place = first_ellipse + 4u * i;
         vec4 e = texelFetch(entries, int(place));
         if (round_depths(e.xy - centre, e.z, low, high, hides) && low <= limit &&

@@ -23,6 +23,12 @@ layout(binding = kExactSlopeXImage, rgba32f) uniform image2D slope_x_image;
 layout(binding = kExactSlopeYImage, rgba32f) uniform image2D slope_y_image;
 layout(std430, binding = kExactCountersStorage) buffer Counters { uint counters[]; };
 
+// Which program this is: Mesa 22 runs both sides of every branch and every loop once, so a scene gets no more than it needs.
+const int kArcs = 1;      // lists hold arcs
+const int kEllipses = 1;  // and ellipses
+const int kSky = 2;       // 0: none, 1: constant, 2: nodes around the circle
+const int kSlopes = 1;    // slopes and signatures are asked for
+
 const float kFar = 1e30;
 const float kBehind = 1e9;      // key of what lies behind
 const float kLookAhead = 1e-4;  // pieces that start at one corner are told apart a little further on
@@ -30,8 +36,8 @@ const float kTwoPi = 6.283185307179586;
 // Loop iterations of one dispatch, under the 65,535 after which Mesa 22 ends all loops of a vector of eight. A point that
 // has spent them goes on in the next.
 const int kBudget = 30000;
-const int kNone = -1;           // nothing in this direction: the sky
-const int kUnknown = -2;
+const float kNone = -1.0;       // nothing in this direction: the sky
+const float kUnknown = -2.0;
 
 // Four points at once, in the four components of every vector: one fetch of a piece serves four, and their arithmetic
 // overlaps.
@@ -39,67 +45,43 @@ bvec4 both(bvec4 a, bvec4 b) { return bvec4(a.x && b.x, a.y && b.y, a.z && b.z, 
 bvec4 either(bvec4 a, bvec4 b) { return bvec4(a.x || b.x, a.y || b.y, a.z || b.z, a.w || b.w); }
 vec4 pick(vec4 no, vec4 yes, bvec4 which) { return mix(no, yes, which); }
 
-// The walk's state in this sector.
 vec4 px, py;
 vec2 axis, side;
-vec4 now, ahead;        // keys: where it stands, and where distances are compared
-vec4 next;              // the nearest event beyond
-vec4 nearest;           // depth of the nearest piece
-vec4 near_start, near_end, near_start_depth, near_end_depth, near_rho;
-vec4 near_entry;
-bvec4 in_light;         // an emitting piece lies in this direction, hidden or not
-bvec4 light_left;       // or further on in this sector
 
-// One piece, seen from the points: keys and depths of its ends, its depth at `ahead`, and how near the curve that it is
-// part of comes (its ends move on it).
-void consider(int entry, bool emits, bvec4 faces, vec4 ks, vec4 ke, vec4 ds, vec4 de, vec4 depth, vec4 rho) {
-    bvec4 seen = both(faces, greaterThan(max(ds, de), vec4(0.0)));
-    bvec4 covers = both(seen, both(lessThanEqual(ks, now), lessThan(now, ke)));
-    bvec4 nearer = both(covers, lessThan(depth, nearest));
-    nearest = pick(nearest, depth, nearer);
-    near_entry = pick(near_entry, vec4(entry), nearer);
-    near_start = pick(near_start, ks, nearer);
-    near_end = pick(near_end, ke, nearer);
-    near_start_depth = pick(near_start_depth, ds, nearer);
-    near_end_depth = pick(near_end_depth, de, nearer);
-    near_rho = pick(near_rho, rho, nearer);
-    // What starts behind the nearest piece found so far starts unseen.
-    bvec4 open = either(greaterThanEqual(ks, near_end), lessThanEqual(ds, max(near_start_depth, near_end_depth)));
-    next = pick(next, min(next, ks), both(both(seen, greaterThan(ks, now)), open));
-    if (emits) {
-        in_light = either(in_light, covers);
-        light_left = either(light_left, both(seen, greaterThan(ke, now)));
-    }
+// A piece seen from the points: keys and depths of its ends towards growing angles, its depth at the key `ahead`, and how
+// near the curve comes that its ends move on.
+struct Span {
+    bvec4 seen;
+    vec4 start, end, start_depth, end_depth, depth, clearance;
+};
+
+// From the ends as vectors from the points.
+void set_ends(inout Span span, bvec4 faces, vec4 sx, vec4 sy, vec4 ex, vec4 ey) {
+    span.start_depth = axis.x * sx + axis.y * sy;
+    span.end_depth = axis.x * ex + axis.y * ey;
+    span.start = pick(vec4(-kBehind), (side.x * sx + side.y * sy) / span.start_depth, greaterThan(span.start_depth, vec4(0.0)));
+    span.end = pick(vec4(kBehind), (side.x * ex + side.y * ey) / span.end_depth, greaterThan(span.end_depth, vec4(0.0)));
+    span.seen = both(faces, greaterThan(max(span.start_depth, span.end_depth), vec4(0.0)));
 }
 
-// Ends as vectors from the points: towards growing angles the piece goes from s to e.
-void ends_of(vec4 sx, vec4 sy, vec4 ex, vec4 ey, out vec4 ks, out vec4 ke, out vec4 ds, out vec4 de) {
-    ds = axis.x * sx + axis.y * sy;
-    de = axis.x * ex + axis.y * ey;
-    ks = pick(vec4(-kBehind), (side.x * sx + side.y * sy) / ds, greaterThan(ds, vec4(0.0)));
-    ke = pick(vec4(kBehind), (side.x * ex + side.y * ey) / de, greaterThan(de, vec4(0.0)));
+Span straight_span(vec4 x0, vec4 y0, vec4 x1, vec4 y1, vec4 ahead) {
+    Span span;
+    vec4 ax = x0 - px, ay = y0 - py;
+    vec4 ex = x1 - x0, ey = y1 - y0;
+    vec4 rise = ax * ey - ay * ex;
+    set_ends(span, lessThan(rise, vec4(0.0)), x1 - px, y1 - py, ax, ay);
+    vec4 wx = axis.x + side.x * ahead, wy = axis.y + side.y * ahead;
+    span.depth = rise / min(wx * ey - wy * ex, vec4(-1e-30));
+    span.clearance = vec4(kFar);
+    return span;
 }
 
-void consider_straight(int entry, bool emits) {
-    vec4 piece = texelFetch(entries, entry);
-    vec4 ax = piece.x - px, ay = piece.y - py;
-    vec4 bx = piece.z - px, by = piece.w - py;
-    vec2 e = piece.zw - piece.xy;
-    vec4 rise = ax * e.y - ay * e.x;
-    vec4 ks, ke, ds, de;
-    ends_of(bx, by, ax, ay, ks, ke, ds, de);
-    float along = axis.x * e.y - axis.y * e.x;
-    float across = side.x * e.y - side.y * e.x;
-    vec4 depth = rise / min(along + across * ahead, vec4(-1e-30));
-    consider(entry, emits, lessThan(rise, vec4(0.0)), ks, ke, ds, de, depth, vec4(kFar));
-}
-
-// A circle seen from outside: the points where rays touch it are v turned by the angle of sine r / |v| either way, of
-// length t; and its near side's depth at `ahead`.
-void touch(vec4 vx, vec4 vy, float radius, out vec4 d2, out vec4 rise, out vec4 sx, out vec4 sy, out vec4 ex, out vec4 ey,
-           out vec4 depth) {
-    d2 = vx * vx + vy * vy;
-    rise = d2 - radius * radius;
+// A circle seen from outside: rays touch it in the directions of v, to its centre, turned by the angle of sine r / |v|
+// either way, at the distance t.
+Span round_span(vec4 vx, vec4 vy, vec4 radius, vec4 ahead, out vec4 sx, out vec4 sy, out vec4 ex, out vec4 ey) {
+    Span span;
+    vec4 d2 = vx * vx + vy * vy;
+    vec4 rise = d2 - radius * radius;
     vec4 t = sqrt(max(rise, vec4(0.0)));
     vec4 k = t / max(d2, vec4(1e-30));
     vec4 tk = t * k;
@@ -110,43 +92,37 @@ void touch(vec4 vx, vec4 vy, float radius, out vec4 d2, out vec4 rise, out vec4 
     ey = vy * tk + vx * rk;
     vec4 wx = axis.x + side.x * ahead, wy = axis.y + side.y * ahead;
     vec4 b = vx * wx + vy * wy;
-    depth = rise / max(b + sqrt(max(b * b - (1.0 + ahead * ahead) * rise, vec4(0.0))), vec4(1e-30));
+    span.depth = rise / max(b + sqrt(max(b * b - (1.0 + ahead * ahead) * rise, vec4(0.0))), vec4(1e-30));
+    span.clearance = sqrt(d2) - radius;
+    span.seen = greaterThan(rise, vec4(0.0));
+    return span;
 }
 
-void consider_disc(int entry, bool emits) {
-    vec4 piece = texelFetch(entries, entry);
-    vec4 d2, rise, sx, sy, ex, ey, depth, ks, ke, ds, de;
-    touch(piece.x - px, piece.y - py, piece.z, d2, rise, sx, sy, ex, ey, depth);
-    ends_of(sx, sy, ex, ey, ks, ke, ds, de);
-    consider(entry, emits, greaterThan(rise, vec4(0.0)), ks, ke, ds, de, depth, sqrt(d2) - piece.z);
+Span disc_span(vec4 cx, vec4 cy, vec4 radius, vec4 ahead) {
+    vec4 sx, sy, ex, ey;
+    Span span = round_span(cx - px, cy - py, radius, ahead, sx, sy, ex, ey);
+    set_ends(span, span.seen, sx, sy, ex, ey);
+    return span;
 }
 
-void consider_arc(int entry, bool emits) {
-    vec4 piece = texelFetch(entries, entry);
-    vec4 ends = texelFetch(entries, entry + 1);
-    vec4 vx = piece.x - px, vy = piece.y - py;
-    vec4 d2, rise, sx, sy, ex, ey, depth, ks, ke, ds, de;
-    touch(vx, vy, piece.z, d2, rise, sx, sy, ex, ey, depth);
-    vec2 ra = ends.xy - piece.xy;  // from the centre
-    vec2 rb = ends.zw - piece.xy;
-    bvec4 front_a = lessThan(ra.x * (ends.x - px) + ra.y * (ends.y - py), vec4(0.0));
-    bvec4 front_b = lessThan(rb.x * (ends.z - px) + rb.y * (ends.w - py), vec4(0.0));
+Span arc_span(vec4 cx, vec4 cy, vec4 radius, vec4 x0, vec4 y0, vec4 x1, vec4 y1, vec4 ahead) {
+    vec4 sx, sy, ex, ey;
+    vec4 vx = cx - px, vy = cy - py;
+    Span span = round_span(vx, vy, radius, ahead, sx, sy, ex, ey);
+    vec4 ax = x0 - cx, ay = y0 - cy, bx = x1 - cx, by = y1 - cy;  // from the centre
+    bvec4 front_a = lessThan(ax * (x0 - px) + ay * (y0 - py), vec4(0.0));
+    bvec4 front_b = lessThan(bx * (x1 - px) + by * (y1 - py), vec4(0.0));
     // With both ends behind the horizon the arc shows its middle, or nothing.
-    bvec4 within = both(lessThan(ra.x * vy - ra.y * vx, vec4(0.0)), lessThan(vx * rb.y - vy * rb.x, vec4(0.0)));
-    bvec4 shows = either(within, either(front_a, front_b));
-    sx = pick(sx, ends.z - px, front_b);
-    sy = pick(sy, ends.w - py, front_b);
-    ex = pick(ex, ends.x - px, front_a);
-    ey = pick(ey, ends.y - py, front_a);
-    ends_of(sx, sy, ex, ey, ks, ke, ds, de);
-    consider(entry, emits, both(shows, greaterThan(rise, vec4(0.0))), ks, ke, ds, de, depth, sqrt(d2) - piece.z);
+    bvec4 within = both(lessThan(ax * vy - ay * vx, vec4(0.0)), lessThan(vx * by - vy * bx, vec4(0.0)));
+    bvec4 shows = both(span.seen, either(within, either(front_a, front_b)));
+    set_ends(span, shows, pick(sx, x1 - px, front_b), pick(sy, y1 - py, front_b), pick(ex, x0 - px, front_a),
+             pick(ey, y0 - py, front_a));
+    return span;
 }
 
-void consider_ellipse(int entry, bool emits) {
-    vec4 head = texelFetch(entries, entry);
-    vec4 frame = texelFetch(entries, entry + 1);
-    vec4 ends = texelFetch(entries, entry + 2);
-    vec4 back = texelFetch(entries, entry + 3);
+// head, frame, ends and back are the four texels of the entry.
+Span ellipse_span(vec4 head, vec4 frame, vec4 ends, vec4 back, vec4 ahead) {
+    Span span;
     // In the frame where the ellipse is the unit circle.
     vec4 fx = px - head.x, fy = py - head.y;
     vec4 qx = frame.x * fx + frame.y * fy;
@@ -168,19 +144,62 @@ void consider_ellipse(int entry, bool emits) {
     bvec4 front_b = both(part, greaterThan(eb.x * qx + eb.y * qy, vec4(1.0)));
     bvec4 within = both(greaterThan(ea.x * qy - ea.y * qx, vec4(0.0)), greaterThan(qx * eb.y - qy * eb.x, vec4(0.0)));
     bvec4 shows = either(not(part), either(within, either(front_a, front_b)));
-    sx = pick(sx, ends.z - px, front_b);
-    sy = pick(sy, ends.w - py, front_b);
-    ex = pick(ex, ends.x - px, front_a);
-    ey = pick(ey, ends.y - py, front_a);
-    vec4 ks, ke, ds, de;
-    ends_of(sx, sy, ex, ey, ks, ke, ds, de);
+    set_ends(span, both(shows, greaterThan(rise, vec4(0.0))), pick(sx, ends.z - px, front_b), pick(sy, ends.w - py, front_b),
+             pick(ex, ends.x - px, front_a), pick(ey, ends.y - py, front_a));
     vec4 dx = axis.x + side.x * ahead, dy = axis.y + side.y * ahead;
     vec4 wx = frame.x * dx + frame.y * dy;
     vec4 wy = frame.z * dx + frame.w * dy;
     vec4 beta = -(qx * wx + qy * wy);
-    vec4 depth = rise / max(beta + sqrt(max(beta * beta - (wx * wx + wy * wy) * rise, vec4(0.0))), vec4(1e-30));
-    float shorter = min(length(back.xy), length(back.zw));
-    consider(entry, emits, both(shows, greaterThan(rise, vec4(0.0))), ks, ke, ds, de, depth, (sqrt(norm) - 1.0) * shorter);
+    span.depth = rise / max(beta + sqrt(max(beta * beta - (wx * wx + wy * wy) * rise, vec4(0.0))), vec4(1e-30));
+    span.clearance = (sqrt(norm) - 1.0) * min(length(back.xy), length(back.zw));
+    return span;
+}
+
+Span straight_at(int entry, vec4 ahead) {
+    vec4 e = texelFetch(entries, entry);
+    return straight_span(vec4(e.x), vec4(e.y), vec4(e.z), vec4(e.w), ahead);
+}
+
+Span disc_at(int entry, vec4 ahead) {
+    vec4 e = texelFetch(entries, entry);
+    return disc_span(vec4(e.x), vec4(e.y), vec4(e.z), ahead);
+}
+
+Span arc_at(int entry, vec4 ahead) {
+    vec4 e = texelFetch(entries, entry);
+    vec4 ends = texelFetch(entries, entry + 1);
+    return arc_span(vec4(e.x), vec4(e.y), vec4(e.z), vec4(ends.x), vec4(ends.y), vec4(ends.z), vec4(ends.w), ahead);
+}
+
+Span ellipse_at(int entry, vec4 ahead) {
+    return ellipse_span(texelFetch(entries, entry), texelFetch(entries, entry + 1), texelFetch(entries, entry + 2),
+                        texelFetch(entries, entry + 3), ahead);
+}
+
+// The walk's state in this sector. Every vector that a loop carries costs Mesa 22 a masked copy each time round: few.
+vec4 now;         // where it stands
+vec4 next;        // the nearest event beyond
+vec4 nearest;     // depth of the nearest piece
+vec4 near_entry;
+vec4 near_end;
+vec4 near_far;    // no point of it lies deeper
+vec4 light_start, light_end;  // no light is seen outside of these keys
+
+void consider(int entry, Span span) {
+    bvec4 covers = both(span.seen, both(lessThanEqual(span.start, now), lessThan(now, span.end)));
+    bvec4 nearer = both(covers, lessThan(span.depth, nearest));
+    nearest = pick(nearest, span.depth, nearer);
+    near_entry = pick(near_entry, vec4(entry), nearer);
+    near_end = pick(near_end, span.end, nearer);
+    near_far = pick(near_far, max(span.start_depth, span.end_depth), nearer);
+    // What starts behind the nearest piece found so far starts unseen.
+    bvec4 open = either(greaterThanEqual(span.start, near_end), lessThanEqual(span.start_depth, near_far));
+    next = pick(next, min(next, span.start), both(both(span.seen, greaterThan(span.start, now)), open));
+}
+
+void shine(Span span) {
+    light_start = pick(light_start, min(light_start, span.start), span.seen);
+    light_end = pick(light_end, max(light_end, span.end), span.seen);
 }
 
 // Integral of the sky's radiance from angle 0 on, and its radiance there.
@@ -207,103 +226,166 @@ uint mixed(uint x) {
     return x ^ (x >> 16);
 }
 
-// Everything of one point whose nearest piece changed: its light so far, and what the edge between does to it.
-struct Point {
-    vec3 sum, slope_x, slope_y;
-    float third;
-    uint signature;
-    vec3 light;   // of the nearest piece, since the key `from`
-    float from;
-    int top;      // its entry
-    int top_id;
-};
+// What the points gather.
+vec4 sum_r, sum_g, sum_b;
+vec4 slope_x_r, slope_x_g, slope_x_b, slope_y_r, slope_y_g, slope_y_b;
+vec4 third;
+uvec4 signature;
+// The nearest piece since the key `from`.
+vec4 top, top_end, top_far, top_end_depth, top_clearance, from;
+vec4 top_r, top_g, top_b;
+uvec4 top_id;
 
-float largest(vec3 c) { return max(c.r, max(c.g, c.b)); }
+// The entries of this sector's list, by kind.
+int first_straight, first_disc, first_arc, first_ellipse, end_entry;
 
-void change(inout Point q, float at, int entry, float start, float start_depth, float rho, float top_end,
-            float top_end_depth, float top_rho, bool lit, float sector_angle) {
-    vec3 new_light = params.sky_kind == 1 ? params.sky.rgb : vec3(0.0);
-    int id = kNone;
-    if (entry != kNone) {
-        id = int(texelFetch(ids, entry).r);
-        new_light = texelFetch(piece_light, id).rgb;
+vec3 sky_between(float a, float b, out vec3 at_b) {
+    vec3 begin, end, before;
+    sky_at(a, begin, before);
+    sky_at(b, end, at_b);
+    return end - begin;
+}
+
+void add_sky(bvec4 which, vec4 a, vec4 b, out vec4 r, out vec4 g, out vec4 bl) {
+    vec3 h0, h1, h2, h3;
+    vec3 s0 = sky_between(a.x, b.x, h0);
+    vec3 s1 = sky_between(a.y, b.y, h1);
+    vec3 s2 = sky_between(a.z, b.z, h2);
+    vec3 s3 = sky_between(a.w, b.w, h3);
+    sum_r += pick(vec4(0.0), vec4(s0.r, s1.r, s2.r, s3.r), which);
+    sum_g += pick(vec4(0.0), vec4(s0.g, s1.g, s2.g, s3.g), which);
+    sum_b += pick(vec4(0.0), vec4(s0.b, s1.b, s2.b, s3.b), which);
+    r = vec4(h0.r, h1.r, h2.r, h3.r);
+    g = vec4(h0.g, h1.g, h2.g, h3.g);
+    bl = vec4(h0.b, h1.b, h2.b, h3.b);
+}
+
+// The light of what was nearest from `from` to `to`.
+void gather(bvec4 which, vec4 to, float sector_angle) {
+    vec4 angle = atan((to - from) / (1.0 + to * from));
+    bvec4 plain = which;
+    if (kSky == 2) {
+        bvec4 open = both(which, equal(top, vec4(kNone)));
+        plain = both(which, notEqual(top, vec4(kNone)));
+        vec4 r, g, b;
+        add_sky(open, sector_angle + atan(from), sector_angle + atan(to), r, g, b);
+        top_r = pick(top_r, r, open);
+        top_g = pick(top_g, g, open);
+        top_b = pick(top_b, b, open);
     }
-    float angle = atan((at - q.from) / (1.0 + at * q.from));
-    q.sum += q.light * (params.sky_kind == 2 && q.top == kNone ? 0.0 : angle);
-    for (bool skies = params.sky_kind == 2; skies; skies = false) {
-        vec3 begin, end, before, here;
-        sky_at(sector_angle + atan(at), end, here);
-        sky_at(sector_angle + atan(q.from), begin, before);
-        if (entry == kNone) new_light = here;
-        if (q.top == kNone) {
-            q.sum += end - begin;
-            q.light = here;
+    angle = pick(vec4(0.0), angle, plain);
+    sum_r += top_r * angle;
+    sum_g += top_g * angle;
+    sum_b += top_b * angle;
+}
+
+// Where the nearest piece changed, at `now`: the light so far, and what the edge between the two does to it.
+void change(bvec4 changed, float sector_angle) {
+    gather(changed, now, sector_angle);
+    bvec4 found = greaterThanEqual(near_entry, vec4(0.0));
+    ivec4 entry = ivec4(max(near_entry, vec4(0.0)));
+    uvec4 id = uvec4(texelFetch(ids, entry.x).r, texelFetch(ids, entry.y).r, texelFetch(ids, entry.z).r, texelFetch(ids, entry.w).r);
+    vec3 l0 = texelFetch(piece_light, int(id.x)).rgb, l1 = texelFetch(piece_light, int(id.y)).rgb;
+    vec3 l2 = texelFetch(piece_light, int(id.z)).rgb, l3 = texelFetch(piece_light, int(id.w)).rgb;
+    vec3 sky = kSky == 1 ? params.sky.rgb : vec3(0.0);
+    vec4 r = pick(vec4(sky.r), vec4(l0.r, l1.r, l2.r, l3.r), found);
+    vec4 g = pick(vec4(sky.g), vec4(l0.g, l1.g, l2.g, l3.g), found);
+    vec4 b = pick(vec4(sky.b), vec4(l0.b, l1.b, l2.b, l3.b), found);
+    if (kSky == 2) {
+        vec4 sr, sg, sb;
+        vec4 at = sector_angle + atan(now);
+        add_sky(bvec4(false), at, at, sr, sg, sb);
+        r = pick(sr, r, found);
+        g = pick(sg, g, found);
+        b = pick(sb, b, found);
+    }
+    id = uvec4(found.x ? id.x + 2u : 1u, found.y ? id.y + 2u : 1u, found.z ? id.z + 2u : 1u, found.w ? id.w + 2u : 1u);
+    vec4 end_depth = vec4(1.0);
+    vec4 clearance = vec4(kFar);
+    if (kSlopes != 0) {
+        // The new pieces once more, for where exactly they start and end.
+        vec4 e0 = texelFetch(entries, entry.x), e1 = texelFetch(entries, entry.y), e2 = texelFetch(entries, entry.z), e3 = texelFetch(entries, entry.w);
+        vec4 x0 = vec4(e0.x, e1.x, e2.x, e3.x), y0 = vec4(e0.y, e1.y, e2.y, e3.y);
+        vec4 x1 = vec4(e0.z, e1.z, e2.z, e3.z), y1 = vec4(e0.w, e1.w, e2.w, e3.w);
+        bvec4 round_ones = both(found, greaterThanEqual(near_entry, vec4(first_disc)));
+        bvec4 arcs = both(found, greaterThanEqual(near_entry, vec4(first_arc)));
+        bvec4 ellipses = both(found, greaterThanEqual(near_entry, vec4(first_ellipse)));
+        Span span = straight_span(x0, y0, x1, y1, now);
+        vec4 start = span.start, start_depth = span.start_depth;
+        end_depth = span.end_depth;
+        {
+            Span other = disc_span(x0, y0, x1, now);
+            start = pick(start, other.start, round_ones);
+            start_depth = pick(start_depth, other.start_depth, round_ones);
+            end_depth = pick(end_depth, other.end_depth, round_ones);
+            clearance = pick(clearance, other.clearance, round_ones);
         }
-    }
-    for (bool broken = q.top != kUnknown && params.with_slopes != 0; broken; broken = false) {
+        if (kArcs != 0) {
+            e0 = texelFetch(entries, entry.x + 1), e1 = texelFetch(entries, entry.y + 1), e2 = texelFetch(entries, entry.z + 1), e3 = texelFetch(entries, entry.w + 1);
+            Span other = arc_span(x0, y0, x1, vec4(e0.x, e1.x, e2.x, e3.x), vec4(e0.y, e1.y, e2.y, e3.y), vec4(e0.z, e1.z, e2.z, e3.z), vec4(e0.w, e1.w, e2.w, e3.w), now);
+            start = pick(start, other.start, arcs);
+            start_depth = pick(start_depth, other.start_depth, arcs);
+            end_depth = pick(end_depth, other.end_depth, arcs);
+            clearance = pick(clearance, other.clearance, arcs);
+        }
+        for (int i = 0; i < 4 && kEllipses != 0; ++i) {
+            bvec4 this_one = both(ellipses, equal(ivec4(i), ivec4(0, 1, 2, 3)));
+            {
+                Span other = ellipse_at(i == 0 ? entry.x : i == 1 ? entry.y : i == 2 ? entry.z : entry.w, now);
+                start = pick(start, other.start, this_one);
+                start_depth = pick(start_depth, other.start_depth, this_one);
+                end_depth = pick(end_depth, other.end_depth, this_one);
+                clearance = pick(clearance, other.clearance, this_one);
+            }
+        }
         // What ends, or what starts, makes the edge; the angle of an edge at distance d turns by 1 / d a pixel.
-        bool starts = entry != kNone && start == at;
-        bool fold = starts && q.top >= 0 && top_end == at;
-        float inverse = inversesqrt(1.0 + at * at);
-        vec2 direction = (axis + side * at) * inverse;
-        float turn = inverse / max(starts ? start_depth : top_end_depth, 1e-6);
-        vec3 jump = q.light - new_light;
-        q.slope_x += jump * (direction.y * turn);
-        q.slope_y -= jump * (direction.x * turn);
-        float size = largest(abs(jump));
-        float closeness = max(turn, 1.0 / max(starts ? rho : top_rho, 1e-6));
-        q.third += size * closeness * closeness * closeness;
-        if (size > 0.0 || (lit && !fold)) q.signature += mixed(uint(q.top_id) * 0x9e3779b9u + uint(id + 2));
+        bvec4 ends = both(greaterThanEqual(top, vec4(0.0)), lessThanEqual(top_end, now));
+        bvec4 fold = both(ends, both(found, lessThan(abs(start - now), vec4(1e-6))));
+        vec4 inverse = inversesqrt(1.0 + now * now);
+        vec4 turn = inverse / max(pick(start_depth, top_end_depth, ends), vec4(1e-6));
+        vec4 weight = pick(vec4(0.0), turn, both(changed, notEqual(top, vec4(kUnknown))));
+        vec4 along = (axis.y + side.y * now) * inverse * weight;
+        vec4 across = (axis.x + side.x * now) * inverse * weight;
+        vec4 jr = top_r - r, jg = top_g - g, jb = top_b - b;
+        slope_x_r += jr * along;
+        slope_x_g += jg * along;
+        slope_x_b += jb * along;
+        slope_y_r -= jr * across;
+        slope_y_g -= jg * across;
+        slope_y_b -= jb * across;
+        vec4 size = max(max(abs(jr), abs(jg)), abs(jb));
+        vec4 closeness = max(turn, 1.0 / max(pick(clearance, top_clearance, ends), vec4(1e-6)));
+        third += pick(vec4(0.0), size * closeness * closeness * closeness, greaterThan(weight, vec4(0.0)));
+        bvec4 counts = both(greaterThan(weight, vec4(0.0)), either(greaterThan(size, vec4(0.0)), not(fold)));
+        uvec4 pair = top_id * 0x9e3779b9u + id;
+        signature += uvec4(counts.x ? mixed(pair.x) : 0u, counts.y ? mixed(pair.y) : 0u, counts.z ? mixed(pair.z) : 0u, counts.w ? mixed(pair.w) : 0u);
     }
-    q.light = new_light;
-    q.top = entry;
-    q.top_id = id + 2;
-    q.from = at;
+    top = pick(top, near_entry, changed);
+    from = pick(from, now, changed);
+    top_r = pick(top_r, r, changed);
+    top_g = pick(top_g, g, changed);
+    top_b = pick(top_b, b, changed);
+    top_end_depth = pick(top_end_depth, end_depth, changed);
+    top_clearance = pick(top_clearance, clearance, changed);
+    top_id = uvec4(changed.x ? id.x : top_id.x, changed.y ? id.y : top_id.y, changed.z ? id.z : top_id.z, changed.w ? id.w : top_id.w);
 }
 
-// The rest of the sector.
-void finish(inout Point q, float sector_angle) {
-    float angle = atan((params.tan_half - q.from) / (1.0 + params.tan_half * q.from));
-    for (bool skies = params.sky_kind == 2 && q.top == kNone; skies; skies = false) {
-        vec3 begin, end, radiance;
-        sky_at(sector_angle + atan(params.tan_half), end, radiance);
-        sky_at(sector_angle + atan(q.from), begin, radiance);
-        q.sum += end - begin;
-        angle = 0.0;
-    }
-    q.sum += q.light * angle;
-}
+int sectors_done(ivec2 block) { return params.continues != 0 ? int(imageLoad(slope_y_image, block).a) : 0; }
 
-void begin_sector(inout Point q) {
-    q.light = vec3(0.0);
-    q.from = -params.tan_half;
-    q.top = kUnknown;
-    q.top_id = 0;
-}
-
-void begin_point(inout Point q) {
-    q.sum = q.slope_x = q.slope_y = vec3(0.0);
-    q.third = 0.0;
-    q.signature = 0u;
-    begin_sector(q);
-}
-
-int resume(ivec2 block) { return params.continues != 0 ? int(imageLoad(slope_y_image, block).a) : 0; }
-
-void store(Point q, ivec2 block, int done) {
-    vec4 value = vec4(q.sum / kTwoPi, float(q.signature & 0xffffffu));
-    vec4 x = vec4(q.slope_x, q.third) / kTwoPi;
-    vec4 y = vec4(q.slope_y / kTwoPi, float(done));
-    for (bool again = params.continues != 0; again; again = false) {
+void store(ivec2 block, int done, vec3 sum, uint seen, vec4 x, vec3 y) {
+    vec4 value = vec4(sum / kTwoPi, float(seen & 0xffffffu));
+    x /= kTwoPi;
+    y /= kTwoPi;
+    if (params.continues != 0) {
         vec4 before = imageLoad(value_image, block);
-        value.a = float((q.signature + uint(before.a)) & 0xffffffu);
+        value.a = float((seen + uint(before.a)) & 0xffffffu);
         value.rgb += before.rgb;
         x += imageLoad(slope_x_image, block);
-        y.rgb += imageLoad(slope_y_image, block).rgb;
+        y += imageLoad(slope_y_image, block).rgb;
     }
     imageStore(value_image, block, value);
     imageStore(slope_x_image, block, x);
-    imageStore(slope_y_image, block, y);
+    imageStore(slope_y_image, block, vec4(y, float(done)));
 }
 
 ivec2 local_point(int first, int index, int count) {
@@ -317,14 +399,14 @@ void solve(int tile_index, int first, int count) {
     ivec2 tile = ivec2(tile_index - row * params.tiles.x, row);
     ivec2 p0 = ivec2(0), p1 = ivec2(kExactTile, 0), p2 = ivec2(0, kExactTile), p3 = ivec2(kExactTile);
     if (params.all_points == 0) {
-        int from = params.first_point + tile_index * params.tile_points;
-        p0 = local_point(from, first, count);
-        p1 = local_point(from, first + 1, count);
-        p2 = local_point(from, first + 2, count);
-        p3 = local_point(from, first + 3, count);
+        int at = params.first_point + tile_index * params.tile_points;
+        p0 = local_point(at, first, count);
+        p1 = local_point(at, first + 1, count);
+        p2 = local_point(at, first + 2, count);
+        p3 = local_point(at, first + 3, count);
     }
     ivec2 origin = tile * kExactBlock;
-    int s = resume(origin + p0);
+    int s = sectors_done(origin + p0);
     if (s >= params.sectors) return;
     ivec2 corner = tile * kExactTile + ivec2(0, params.first_row);
     ivec2 last = params.canvas - 1;
@@ -335,11 +417,9 @@ void solve(int tile_index, int first, int count) {
                      texelFetch(distance_texture, x2 + params.border, 0).r, texelFetch(distance_texture, x3 + params.border, 0).r);
     bvec4 solid = lessThanEqual(room, vec4(0.0));
 
-    Point q0, q1, q2, q3;
-    begin_point(q0);
-    begin_point(q1);
-    begin_point(q2);
-    begin_point(q3);
+    sum_r = sum_g = sum_b = vec4(0.0);
+    slope_x_r = slope_x_g = slope_x_b = slope_y_r = slope_y_g = slope_y_b = third = vec4(0.0);
+    signature = uvec4(0u);
     int budget = kBudget;
     int list = tile_index * params.sectors;
     if (all(solid)) s = params.sectors;
@@ -347,96 +427,83 @@ void solve(int tile_index, int first, int count) {
         uvec4 head = texelFetch(heads, list + s);
         // Each entry starts and ends at most one interval, and each step of the walk asks every entry.
         int most = int((head.y & 0xffffu) + (head.z & 0xffffu) + (head.w & 0xffu) + ((head.w >> 16) & 0xffu));
-        most = head.x >= kExactOpen ? 10 : (2 * most + 3) * (most + 5);
+        most = head.x >= kExactOpen ? 10 : (2 * most + 4) * (most + 5);
         if (most > budget && budget < kBudget) break;
-        vec4 sector = texelFetch(sectors, s);
-        axis = sector.xy;
-        side = vec2(-axis.y, axis.x);
-        int first_straight = int(head.x);
-        int first_disc = first_straight + int(head.y & 0xffffu);
-        int first_arc = first_disc + int(head.z & 0xffffu);
-        int first_ellipse = first_arc + 2 * int(head.w & 0xffu);
-        int end_entry = first_ellipse + 4 * int((head.w >> 16) & 0xffu);
-        int last_straight_light = first_straight + int(head.y >> 16);
-        int last_disc_light = first_disc + int(head.z >> 16);
-        int last_arc_light = first_arc + 2 * int((head.w >> 8) & 0xffu);
-        int last_ellipse_light = first_ellipse + 4 * int(head.w >> 24);
-        if (head.x >= kExactOpen) first_disc = first_arc = first_ellipse = end_entry = first_straight;
+        if (head.x != kExactDark) {
+            vec4 sector = texelFetch(sectors, s);
+            axis = sector.xy;
+            side = vec2(-axis.y, axis.x);
+            first_straight = int(head.x);
+            first_disc = first_straight + int(head.y & 0xffffu);
+            first_arc = first_disc + int(head.z & 0xffffu);
+            first_ellipse = first_arc + 2 * int(head.w & 0xffu);
+            end_entry = first_ellipse + 4 * int((head.w >> 16) & 0xffu);
+            if (head.x == kExactOpen) first_straight = first_disc = first_arc = first_ellipse = end_entry = 0;
 
-        begin_sector(q0);
-        begin_sector(q1);
-        begin_sector(q2);
-        begin_sector(q3);
-        vec4 top = vec4(kUnknown);
-        vec4 top_end = vec4(-kFar);
-        vec4 top_start_depth = vec4(1.0);
-        vec4 top_end_depth = vec4(1.0);
-        vec4 top_rho = vec4(kFar);
-        vec4 limit = vec4(params.tan_half);
-        now = pick(vec4(-params.tan_half), limit, solid);
-        if (head.x == kExactDark) now = limit;
-        while (any(lessThan(now, limit)) && budget > 0) {
-            ahead = now + kLookAhead;
-            next = limit;
-            nearest = vec4(kFar);
-            near_entry = vec4(kNone);
-            // What was nearest hides as long as it goes on.
-            near_start = vec4(kFar);
-            near_end = pick(vec4(-kFar), top_end, greaterThan(top_end, now));
-            near_start_depth = top_start_depth;
-            near_end_depth = top_end_depth;
-            near_rho = vec4(kFar);
-            in_light = bvec4(params.sky_kind != 0);
-            light_left = in_light;
-            budget -= 5 + end_entry - first_straight;
-            for (int i = first_straight; i < first_disc; ++i) consider_straight(i, i < last_straight_light);
-            for (int i = first_disc; i < first_arc; ++i) consider_disc(i, i < last_disc_light);
-            for (int i = first_arc; i < first_ellipse; i += 2) consider_arc(i, i < last_arc_light);
-            for (int i = first_ellipse; i < end_entry; i += 4) consider_ellipse(i, i < last_ellipse_light);
-            bvec4 found = greaterThanEqual(near_entry, vec4(0.0));
-            next = pick(next, min(next, near_end), found);
-            // Loops, since Mesa 22 skips loops that no invocation enters, but no branches.
-            bvec4 changed = both(notEqual(near_entry, top), lessThan(now, limit));
-            for (bool go = changed.x; go; go = false)
-                change(q0, now.x, int(near_entry.x), near_start.x, near_start_depth.x, near_rho.x, top_end.x, top_end_depth.x,
-                       top_rho.x, in_light.x, sector.z);
-            for (bool go = changed.y; go; go = false)
-                change(q1, now.y, int(near_entry.y), near_start.y, near_start_depth.y, near_rho.y, top_end.y, top_end_depth.y,
-                       top_rho.y, in_light.y, sector.z);
-            for (bool go = changed.z; go; go = false)
-                change(q2, now.z, int(near_entry.z), near_start.z, near_start_depth.z, near_rho.z, top_end.z, top_end_depth.z,
-                       top_rho.z, in_light.z, sector.z);
-            for (bool go = changed.w; go; go = false)
-                change(q3, now.w, int(near_entry.w), near_start.w, near_start_depth.w, near_rho.w, top_end.w, top_end_depth.w,
-                       top_rho.w, in_light.w, sector.z);
-            top = pick(top, near_entry, changed);
-            top_end = pick(vec4(-kFar), near_end, found);
-            top_start_depth = near_start_depth;
-            top_end_depth = near_end_depth;
-            top_rho = near_rho;
-            now = pick(limit, next, light_left);
-        }
-        for (bool go = head.x != kExactDark; go; go = false) {
-            finish(q0, sector.z);
-            finish(q1, sector.z);
-            finish(q2, sector.z);
-            finish(q3, sector.z);
+            // Without a sky the walk goes from where the first light starts to where the last ends, a little more than that.
+            now = vec4(-params.tan_half);
+            vec4 limit = vec4(params.tan_half);
+            if (kSky == 0) {
+                int last_straight = first_straight + int(head.y >> 16);
+                int last_disc = first_disc + int(head.z >> 16);
+                int last_arc = first_arc + 2 * int((head.w >> 8) & 0xffu);
+                int last_ellipse = first_ellipse + 4 * int(head.w >> 24);
+                light_start = vec4(kFar);
+                light_end = vec4(-kFar);
+                budget -= 5 + last_straight - first_straight + last_disc - first_disc + last_arc - first_arc + last_ellipse - first_ellipse;
+                for (int i = first_straight; i < last_straight; ++i) shine(straight_at(i, vec4(0.0)));
+                for (int i = first_disc; i < last_disc; ++i) shine(disc_at(i, vec4(0.0)));
+                if (kArcs != 0) for (int i = first_arc; i < last_arc; i += 2) shine(arc_at(i, vec4(0.0)));
+                if (kEllipses != 0) for (int i = first_ellipse; i < last_ellipse; i += 4) shine(ellipse_at(i, vec4(0.0)));
+                now = max(now, light_start - 2.0 * kLookAhead);
+                limit = min(limit, light_end + 2.0 * kLookAhead);
+            }
+            from = now;
+            top = vec4(kUnknown);
+            top_end = vec4(-kFar);
+            top_far = top_end_depth = vec4(1.0);
+            top_clearance = vec4(kFar);
+            top_r = top_g = top_b = vec4(0.0);
+            top_id = uvec4(0u);
+            now = pick(now, limit, solid);
+            while (any(lessThan(now, limit)) && budget > 0) {
+                vec4 ahead = now + kLookAhead;
+                next = limit;
+                nearest = vec4(kFar);
+                near_entry = vec4(kNone);
+                // What was nearest hides as long as it goes on.
+                near_end = pick(vec4(-kFar), top_end, greaterThan(top_end, now));
+                near_far = top_far;
+                budget -= 5 + end_entry - first_straight;
+                for (int i = first_straight; i < first_disc; ++i) consider(i, straight_at(i, ahead));
+                for (int i = first_disc; i < first_arc; ++i) consider(i, disc_at(i, ahead));
+                if (kArcs != 0) for (int i = first_arc; i < first_ellipse; i += 2) consider(i, arc_at(i, ahead));
+                if (kEllipses != 0) for (int i = first_ellipse; i < end_entry; i += 4) consider(i, ellipse_at(i, ahead));
+                bvec4 found = greaterThanEqual(near_entry, vec4(0.0));
+                next = pick(next, min(next, near_end), found);
+                // A loop, since Mesa 22 skips loops that no invocation enters, but no branches.
+                bvec4 changed = both(notEqual(near_entry, top), lessThan(now, limit));
+                for (int once = int(any(changed)); once > 0; --once) change(changed, sector.z);
+                top_end = pick(vec4(-kFar), near_end, found);
+                top_far = near_far;
+                now = next;
+            }
+            gather(bvec4(true), max(now, from), sector.z);
         }
     }
 
     // A list that takes more than a whole budget is cut off.
     if (s < params.sectors || budget <= 0) atomicAdd(counters[s < params.sectors ? kExactCountUnfinished : kExactCountSpent], 1u);
-    store(q0, origin + p0, s);
-    if (p1 != p0) store(q1, origin + p1, s);
-    if (p2 != p1) store(q2, origin + p2, s);
-    if (p3 != p2) store(q3, origin + p3, s);
+    store(origin + p0, s, vec3(sum_r.x, sum_g.x, sum_b.x), signature.x, vec4(slope_x_r.x, slope_x_g.x, slope_x_b.x, third.x), vec3(slope_y_r.x, slope_y_g.x, slope_y_b.x));
+    if (p1 != p0) store(origin + p1, s, vec3(sum_r.y, sum_g.y, sum_b.y), signature.y, vec4(slope_x_r.y, slope_x_g.y, slope_x_b.y, third.y), vec3(slope_y_r.y, slope_y_g.y, slope_y_b.y));
+    if (p2 != p1) store(origin + p2, s, vec3(sum_r.z, sum_g.z, sum_b.z), signature.z, vec4(slope_x_r.z, slope_x_g.z, slope_x_b.z, third.z), vec3(slope_y_r.z, slope_y_g.z, slope_y_b.z));
+    if (p3 != p2) store(origin + p3, s, vec3(sum_r.w, sum_g.w, sum_b.w), signature.w, vec4(slope_x_r.w, slope_x_g.w, slope_x_b.w, third.w), vec3(slope_y_r.w, slope_y_g.w, slope_y_b.w));
 }
 
 void main() {
     int index = int(gl_GlobalInvocationID.x);
     int jobs_given = params.all_points != 0 ? params.extent.x : int(counters[kExactCountLevel + 4 * params.level]);
-    // A loop, since Mesa 22 skips loops that no invocation enters, but no branches.
-    for (bool go = index < jobs_given; go; go = false) {
+    if (index < jobs_given) {
         uint job = params.all_points != 0 ? uint(index) : texelFetch(jobs, index).r;
         int tile = int(job & 0xffffffu);
         solve(tile, 4 * int(job >> 24), params.all_points != 0 ? 4 : int(counters[params.first_count + tile]));

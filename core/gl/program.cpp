@@ -28,9 +28,10 @@ std::string program_log(GLuint program) {
 
 }  // namespace
 
-ComputeProgram::ComputeProgram(const std::string& name, std::size_t params_bytes, const std::string& shader_dir)
+ComputeProgram::ComputeProgram(const std::string& name, std::size_t params_bytes, const std::string& shader_dir,
+                               const ShaderConstants& constants)
     : name_(name), params_(params_bytes) {
-    const FlatShader source = flatten_shader(name, shader_dir);
+    const FlatShader source = flatten_shader(name, shader_dir, constants);
     const GLuint shader = glCreateShader(GL_COMPUTE_SHADER);
     const char* text = source.text.c_str();
     glShaderSource(shader, 1, &text, nullptr);

@@ -8,6 +8,7 @@
 #include <glm/ext/vector_int2.hpp>
 
 #include "core/gl/handles.h"
+#include "core/gl/shader_source.h"
 
 namespace penumbra::gl {
 
@@ -16,7 +17,8 @@ public:
     ComputeProgram() = default;
     // Builds glsl/<name> and checks that its parameter block has `params_bytes` bytes.
     // Throws DeviceError with "glsl/x.comp:LINE:COL: error: ..." lines.
-    ComputeProgram(const std::string& name, std::size_t params_bytes, const std::string& shader_dir = {});
+    ComputeProgram(const std::string& name, std::size_t params_bytes, const std::string& shader_dir = {},
+                   const ShaderConstants& constants = {});
     ComputeProgram(ComputeProgram&&) noexcept = default;
     ComputeProgram& operator=(ComputeProgram&&) noexcept = default;
     ~ComputeProgram();

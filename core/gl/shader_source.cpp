@@ -29,7 +29,7 @@ bool is_name_char(char c) { return std::isalnum(static_cast<unsigned char>(c)) !
 
 class Flattener {
 public:
-    Flattener(const std::string& folder, FlatShader& out) : folder_(folder), out_(out) {}
+    Flattener(const std::string& folder, const ShaderConstants& given, FlatShader& out) : folder_(folder), given_(given), out_(out) {}
 
     void add(const std::string& name) {
         if (std::find(out_.files.begin(), out_.files.end(), name) != out_.files.end()) return;
@@ -43,6 +43,7 @@ public:
                 add(resolve(name, line.substr(10, end - 10)));
                 continue;
             }
+            give_constant(line);
             remember_constant(line);
             if (line.find("layout(") != std::string::npos) line = substitute(line);
             out_.text += line + "\n";
@@ -59,6 +60,14 @@ private:
         for (const EmbeddedShader& shader : embedded_shaders())
             if (name == shader.name) return name;
         return from.substr(0, slash + 1) + name;
+    }
+
+    // `const int NAME = ...;` takes the value given for NAME.
+    void give_constant(std::string& line) const {
+        for (const auto& [name, value] : given_) {
+            const std::string start = "const int " + name + " = ";
+            if (line.rfind(start, 0) == 0) line = start + std::to_string(value) + line.substr(line.find(';'));
+        }
     }
 
     void remember_constant(const std::string& line) {
@@ -94,6 +103,7 @@ private:
     }
 
     const std::string& folder_;
+    const ShaderConstants& given_;
     FlatShader& out_;
     std::map<std::string, std::string> constants_;
 };
@@ -133,9 +143,9 @@ LogLine parse_log_line(const std::string& line) {
 
 }  // namespace
 
-FlatShader flatten_shader(std::string_view name, const std::string& folder) {
+FlatShader flatten_shader(std::string_view name, const std::string& folder, const ShaderConstants& constants) {
     FlatShader shader;
-    Flattener(folder, shader).add(std::string(name));
+    Flattener(folder, constants, shader).add(std::string(name));
     return shader;
 }
 

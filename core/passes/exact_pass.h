@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <compare>
 #include <functional>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/gl/program.h"
@@ -30,10 +33,21 @@ public:
 private:
     struct Band;
     PassWork make_lists(const Plan& plan, Band& band);
-    PassWork solve(const DistanceField& field, Band& band, int level);
+    PassWork solve(const Plan& plan, const DistanceField& field, Band& band, int level);
 
-    gl::ComputeProgram lists_;
-    gl::ComputeProgram solve_;
+    // A program for what a scene has, compiled when first asked for.
+    struct Needs {
+        bool arcs, ellipses;
+        int sky;
+        bool slopes;
+        auto operator<=>(const Needs&) const = default;
+    };
+    gl::ComputeProgram& lists_for(const ExactPlan& exact);
+    gl::ComputeProgram& solver_for(const Needs& needs);
+
+    std::string shader_dir_;
+    std::map<std::pair<bool, bool>, gl::ComputeProgram> lists_;
+    std::map<Needs, gl::ComputeProgram> solvers_;
     gl::ComputeProgram split_;
     gl::ComputeProgram gather_;
     gl::ComputeProgram mean_;
