@@ -22,6 +22,7 @@
 #include "core/passes/resolve_pass.h"
 #include "core/passes/scene_buffers.h"
 #include "core/plan/plan.h"
+#include "core/plan/shape_lists.h"
 
 namespace penumbra {
 namespace {
@@ -191,15 +192,19 @@ RenderResult Renderer::Impl::render(const Scene& scene) {
     const Clock::time_point start = Clock::now();
     const bool linear = scene.output.format != "png";
     const Plan plan = make_plan(scene, limits);
-    const SceneBuffers buffers(pack_scene(scene, plan.radiance_scale), scene.sky, plan);
+    const PackedScene packed = pack_scene(scene, plan.radiance_scale);
+    const SceneBuffers buffers(packed, scene.sky, plan);
     buffers.bind();
     Recorder record(timer);
+
+    ShapeLists lists;
+    if (plan.list_shapes) record.host("shape lists", plan.grid.size, [&] { lists = list_shapes(packed, plan.grid); });
 
     DistanceField field;
     if (plan.shape_slices.empty())
         field = DistancePass::empty_field(plan);
     else
-        record.pass("distance", plan.grid.size, [&] { return distance.run(plan, settings, field); });
+        record.pass("distance", plan.grid.size, [&] { return distance.run(plan, lists, settings, field); });
     if (!plan.jump_steps.empty())
         record.pass("jump flood", plan.grid.size, [&] { return jump_flood.run(plan, settings, field); });
 
@@ -258,6 +263,7 @@ RenderResult Renderer::Impl::render(const Scene& scene) {
     stats.height = plan.canvas.y;
     stats.gpu_bytes = plan.gpu_bytes + buffers.bytes();
     stats.skipped = plan.skipped;
+    if (lists.tiles.x > 0) stats.skipped.push_back(saved_by_lists(lists, packed, plan.grid));
     stats.total_ms = ms_since(start);
     return result;
 }

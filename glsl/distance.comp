@@ -1,4 +1,4 @@
-// Reads the packed scene; writes the signed distance to the union of all shapes and the topmost shape that
+// Reads the packed scene and the lists of near shapes; writes the signed distance to the union of all shapes and the topmost shape that
 // covers the pixel (else the nearest one, -1 without shapes). One thread is one grid pixel.
 #version 430 core
 #include "distance.h"
@@ -6,6 +6,8 @@
 
 layout(local_size_x = kDistanceGroupX, local_size_y = kDistanceGroupY) in;
 layout(std140, binding = kDistanceParamsBinding) uniform Params { DistanceParams params; };
+layout(binding = kTileRangesUnit) uniform isamplerBuffer tile_ranges;
+layout(binding = kTileShapesUnit) uniform isamplerBuffer tile_shapes;
 layout(r32f, binding = kDistanceImageBinding) uniform image2D distance_image;
 layout(r32i, binding = kMaterialImageBinding) uniform iimage2D material_image;
 
@@ -20,7 +22,13 @@ void main() {
         nearest = imageLoad(distance_image, pixel).r;
         material = imageLoad(material_image, pixel).r;
     }
-    for (int i = params.first_shape; i < params.end_shape; ++i) {
+    ivec2 range = ivec2(params.first_shape, params.end_shape);
+    if (params.tiles > 0) {
+        ivec2 tile = pixel / kDistanceTile;
+        range = texelFetch(tile_ranges, params.first_range + tile.y * params.tiles + tile.x).rg;
+    }
+    for (int k = range.x; k < range.y; ++k) {
+        int i = params.tiles > 0 ? texelFetch(tile_shapes, k).r : k;
         float d = shape_distance(i, p, nearest);
         // Later shapes lie on top of earlier ones wherever both cover the point.
         if (d <= 0.0 || d < nearest) material = i;

@@ -10,6 +10,9 @@
 namespace penumbra::gl {
 namespace {
 
+// A texture unit that no pass reads from; GL 4.3 has 16 for each stage at least.
+constexpr GLenum kScratchUnit = 15;
+
 std::size_t texel_bytes(GLenum format) {
     switch (format) {
         case GL_RGBA32F: return 16;
@@ -108,6 +111,8 @@ BufferTexture::BufferTexture(GLenum internal_format, const void* data, std::size
     glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max<std::size_t>(bytes, 16)),
                  bytes == 0 ? kNothing : data, GL_STATIC_DRAW);
     glGenTextures(1, &id_);
+    // Not on a unit whose buffer texture a pass is about to read.
+    glActiveTexture(GL_TEXTURE0 + kScratchUnit);
     glBindTexture(GL_TEXTURE_BUFFER, id_);
     glTexBuffer(GL_TEXTURE_BUFFER, internal_format, buffer_);
     const GLenum error = glGetError();

@@ -10,7 +10,7 @@ namespace penumbra {
 DistancePass::DistancePass(const std::string& shader_dir)
     : program_("distance.comp", sizeof(glsl::DistanceParams), shader_dir) {}
 
-PassWork DistancePass::run(const Plan& plan, const PassSettings& settings, DistanceField& out) {
+PassWork DistancePass::run(const Plan& plan, const ShapeLists& lists, const PassSettings& settings, DistanceField& out) {
     out.distance = settings.take(GL_R32F, plan.grid.size);
     out.material = settings.take(GL_R32I, plan.grid.size);
     out.distance.bind_image(glsl::kDistanceImageBinding, GL_READ_WRITE);
@@ -20,14 +20,29 @@ PassWork DistancePass::run(const Plan& plan, const PassSettings& settings, Dista
     params.extent = plan.grid.size;
     params.border = plan.grid.border;
     params.far_px = static_cast<float>(plan.grid.diagonal_px);
+    const auto dispatch = [&](double shapes) {
+        const auto slice = static_cast<std::size_t>(double(settings.distance_iterations) / std::max(shapes, 1.0));
+        work.dispatches += program_.dispatch(params, plan.grid.size, slice);
+        work.bytes += out.distance.bytes() + out.material.bytes();
+        params.continues = 1;
+    };
+    const gl::BufferTexture ranges(GL_RG32I, lists.ranges.data(), lists.ranges.size() * sizeof(glm::ivec2));
+    const gl::BufferTexture shapes(GL_R32I, lists.shapes.data(), lists.shapes.size() * sizeof(int));
+    ranges.bind_texture(glsl::kTileRangesUnit);
+    shapes.bind_texture(glsl::kTileShapesUnit);
+    if (lists.tiles.x > 0) {
+        params.tiles = lists.tiles.x;
+        for (int slice = 0; slice < lists.slices; ++slice) {
+            params.first_range = slice * static_cast<int>(lists.tile_count());
+            dispatch(lists.mean_length);
+        }
+        return work;
+    }
     for (const ShapeSlice& slice : plan.shape_slices) {
         params.first_shape = slice.first;
         params.end_shape = slice.end;
-        const auto shapes = static_cast<std::size_t>(slice.end - slice.first);
-        work.dispatches += program_.dispatch(params, plan.grid.size, settings.distance_iterations / std::max<std::size_t>(shapes, 1));
-        params.continues = 1;
+        dispatch(slice.end - slice.first);
     }
-    work.bytes = plan.shape_slices.size() * (out.distance.bytes() + out.material.bytes());
     return work;
 }
 

@@ -12,22 +12,12 @@
 namespace penumbra {
 namespace {
 
-// Iterations that one dispatch of the distance pass may spend: half of what Mesa 22 allows an invocation, since a
-// loop's last test may count as well.
-constexpr std::size_t kIterationsPerSlice = 30000;
-
 // The composed picture leaves the device in bands of this size.
 constexpr std::size_t kBandBytes = std::size_t(64) << 20;
 
 // A loop in a branch that no invocation of a vector takes still counts once on Mesa 22: each shape costs an iteration of
 // its own and one for each of the two loops over an outline's inside.
 constexpr std::size_t kIterationsPerShape = 3;
-
-// Loop iterations of the distance to a shape.
-std::size_t distance_iterations(const Shape& shape) {
-    const bool ellipse = std::holds_alternative<Ellipse>(shape.geometry);
-    return kIterationsPerShape + edge_count(shape) + (ellipse ? static_cast<std::size_t>(glsl::kEllipseIterations) : 0);
-}
 
 // Above this, cascades are kept in half floats: two 4096 x 4096 textures in full floats are 512 MiB.
 constexpr std::size_t kFullFloatBytes = std::size_t(320) << 20;
@@ -69,7 +59,7 @@ std::vector<ShapeSlice> slice_shapes(const std::vector<Shape>& shapes) {
     std::vector<ShapeSlice> slices;
     std::size_t spent = 0;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        const std::size_t cost = distance_iterations(shapes[i]);
+        const std::size_t cost = distance_iterations(static_cast<int>(shapes[i].geometry.index()), edge_count(shapes[i]));
         if (slices.empty() || spent + cost > kIterationsPerSlice) {
             slices.push_back({static_cast<int>(i), static_cast<int>(i)});
             spent = 0;
@@ -89,6 +79,10 @@ void check_size(glm::ivec2 size, std::size_t texel_bytes, const DeviceLimits& li
 }
 
 }  // namespace
+
+std::size_t distance_iterations(int type, std::size_t edges) {
+    return kIterationsPerShape + edges + (type == glsl::kShapeEllipse ? static_cast<std::size_t>(glsl::kEllipseIterations) : 0);
+}
 
 CascadeSettings cascade_settings(Quality quality) {
     // Points of the measured front of rc (docs/benchmarks.md).
@@ -186,6 +180,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
         else
             plan.shape_slices.push_back({0, 0});
     }
+    plan.list_shapes = skip && scene.shapes.size() >= kFewestListedShapes;
     const std::vector<int> jumps = plan_jumps(plan.grid.size);
     if (brute_force)
         leave_out("jump flooding", "rays meet bitmaps texel by texel", grid_pixels * double(jumps.size()));

@@ -48,6 +48,16 @@ struct ShapeSlice {
     int end = 0;
 };
 
+// Iterations that one dispatch of the distance pass may spend: half of what Mesa 22 allows an invocation, since a
+// loop's last test may count as well.
+constexpr std::size_t kIterationsPerSlice = 30000;
+
+// Loop iterations of the distance to a shape of this type (glsl/scene_records.h).
+std::size_t distance_iterations(int type, std::size_t edges);
+
+// Scenes of fewer shapes are not worth lists.
+constexpr std::size_t kFewestListedShapes = 2;
+
 // Brute force: `rays` stratified rays a pixel, a few per dispatch, since Mesa before 25 ends loops.
 struct ReferencePlan {
     int rays = 0;  // 0: not this method
@@ -61,6 +71,7 @@ struct Plan {
     glm::ivec2 canvas{0};
     GridPlan grid;
     std::vector<ShapeSlice> shape_slices;
+    bool list_shapes = false;           // per tile of the grid: each pixel asks its tile's shapes only
     std::vector<int> jump_steps;        // of jump flooding, empty without bitmaps
     std::vector<CascadePlan> cascades;  // [0] is the nearest; empty when no light can arrive
     ReferencePlan reference;

@@ -152,6 +152,7 @@ TEST(Distance, SlicesAndBandsChangeNothing) {
         scene.shapes.push_back(shape(Polyline{{at, at + Point(4, 1), at + Point(1, 5)}, 0.7, true}));
     }
     Plan plan = make_plan(scene, {});
+    plan.list_shapes = false;
     ASSERT_EQ(plan.shape_slices.size(), 1u);
     const Field whole = run_distance(scene, plan);
     plan.shape_slices = {{0, 1}, {1, 22}, {22, 23}, {23, 60}};

@@ -54,7 +54,7 @@ std::vector<Layout> layouts() {
         {"distance.comp", sizeof(glsl::DistanceParams),
          {FIELD(DistanceParams, origin), FIELD(DistanceParams, extent), FIELD(DistanceParams, border),
           FIELD(DistanceParams, first_shape), FIELD(DistanceParams, end_shape), FIELD(DistanceParams, continues),
-          FIELD(DistanceParams, far_px), FIELD(DistanceParams, pad0), FIELD(DistanceParams, pad1)},
+          FIELD(DistanceParams, far_px), FIELD(DistanceParams, tiles), FIELD(DistanceParams, first_range)},
          glsl::kDistanceGroupX, glsl::kDistanceGroupY},
         {"jump_seed.comp", sizeof(glsl::JumpParams), jump_fields(), glsl::kJumpGroupX, glsl::kJumpGroupY},
         {"jump_flood.comp", sizeof(glsl::JumpParams), jump_fields(), glsl::kJumpGroupX, glsl::kJumpGroupY},

@@ -50,10 +50,11 @@ Field read_field(const DistanceField& field) {
 
 Field run_distance(const Scene& scene, const Plan& plan, const PassSettings& settings) {
     Shared& s = all();
-    const SceneBuffers buffers(pack_scene(scene, 1), scene.sky, plan);
+    const PackedScene packed = pack_scene(scene, 1);
+    const SceneBuffers buffers(packed, scene.sky, plan);
     buffers.bind();
     DistanceField field;
-    s.distance.run(plan, settings, field);
+    s.distance.run(plan, plan.list_shapes ? list_shapes(packed, plan.grid) : ShapeLists(), settings, field);
     if (!plan.jump_steps.empty()) s.jump_flood.run(plan, settings, field);
     return read_field(field);
 }

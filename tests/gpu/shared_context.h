@@ -12,6 +12,7 @@
 #include "core/passes/jump_flood_pass.h"
 #include "core/passes/scene_buffers.h"
 #include "core/plan/plan.h"
+#include "core/plan/shape_lists.h"
 
 namespace penumbra::test {
 
@@ -30,7 +31,7 @@ struct Field {
 };
 Field read_field(const DistanceField& field);
 
-// Distance pass (and jump flooding, where the plan has it) of a scene.
+// Distance pass (with lists of near shapes, and with jump flooding, where the plan has them) of a scene.
 Field run_distance(const Scene& scene, const Plan& plan, const PassSettings& settings = kOneSlice);
 Field run_distance(const Scene& scene);
 

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Which shapes can decide the distance field in which tile of the grid: the distance pass asks only those. Pure arithmetic.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <glm/ext/vector_int2.hpp>
+
+#include "core/plan/pack.h"
+#include "core/plan/plan.h"
+
+namespace penumbra {
+
+// In each tile, the shapes that can be the nearest of one of its pixels, or cover it, in the scene's order: the same
+// distances and the same materials come of these as of all.
+struct ShapeLists {
+    glm::ivec2 tiles{0};             // along x and y, kDistanceTile pixels a side; 0: no lists
+    int slices = 1;                  // a list that one invocation cannot walk is walked in parts
+    std::vector<glm::ivec2> ranges;  // slice by slice, row by row: first and end in `shapes`
+    std::vector<int> shapes;
+    double mean_length = 0;          // shapes a pixel asks
+    std::size_t tile_count() const { return static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y); }
+};
+
+ShapeLists list_shapes(const PackedScene& scene, const GridPlan& grid);
+
+// The work that the lists save, for the statistics.
+SkippedWork saved_by_lists(const ShapeLists& lists, const PackedScene& scene, const GridPlan& grid);
+
+}  // namespace penumbra
