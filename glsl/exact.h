@@ -11,24 +11,20 @@ const int kExactGroupY = 1;
 const int kExactSolveGroupX = 32;
 const int kExactParamsBinding = 0;
 
-// A tile is kExactTile pixels across and is solved on its own: its points are the centres of its pixels and, so that every
-// cell has four corners, those of the next column and row.
+// Pixels across a tile, whose points share lists, and across the largest cells. The last tiles' points include those of the
+// column and row beyond, so that every cell has four corners.
 const int kExactTile = 16;
-const int kExactBlock = 17;
+const int kExactCell = 8;
 
 // Texture units (0 to 3 are the scene's).
 const int kExactDistanceUnit = 4;
 const int kExactHeadsUnit = 5;        // RGBA32UI: one list of each tile and sector; see exact_lists.comp
 const int kExactEntriesUnit = 6;      // RGBA32F: geometry of the pieces of the lists
-const int kExactIdsUnit = 7;          // R32UI: which piece an entry is
-const int kExactPieceLightUnit = 8;   // RGBA32F: radiance of each piece
+const int kExactLightsUnit = 7;       // RGBA32F: radiance of an entry's piece, and which piece it is
 const int kExactSectorsUnit = 9;      // RGBA32F: cos and sin of the sector's axis, its angle, unused
 const int kExactSkyUnit = 10;         // RGBA32F: two texels a node: sky integral from angle 0, sky radiance
 const int kExactPointsUnit = 11;      // R32UI: x | y << 8 in the tile, tile by tile
-const int kExactValueUnit = 12;
-const int kExactSlopeXUnit = 13;
-const int kExactSlopeYUnit = 14;
-const int kExactLeafUnit = 15;
+const int kExactValueUnit = 8;
 const int kExactJobsUnit = 12;        // R32UI: tile | four points of it << 24
 
 // Images.
@@ -36,12 +32,13 @@ const int kExactValueImage = 0;   // rgb mean radiance, a: signature of what is 
 const int kExactSlopeXImage = 1;  // rgb its slope along x per pixel, a: bound on its third derivatives
 const int kExactSlopeYImage = 2;  // rgb its slope along y, a: sectors that are done
 const int kExactStateImage = 3;   // R32UI: 1 where a point has been asked for
+const int kExactRadianceImage = 5;
 const int kExactLeafImage = 4;    // R32UI: at a cell's first pixel: size of the smallest cell there
 
 // Storage.
 const int kExactHeadsStorage = 0;
 const int kExactEntriesStorage = 1;
-const int kExactIdsStorage = 2;
+const int kExactLightsStorage = 2;
 const int kExactPointsStorage = 3;
 const int kExactCountersStorage = 4;
 
@@ -93,7 +90,7 @@ struct ExactParams {
     float tolerance;     // of the interpolation, relative
     int kink_cell;       // cells larger than this are split where what is seen differs
     float floor_share;   // of the mean radiance, added to what the tolerance is relative to
-    int all_points;      // level 0: every corner of every tile
+    int ask_first;       // asks for the corners of the largest cells, and no more
     int strict_dark;     // split where some corners are dark and others are not
     int pad0;
     int pad1;

@@ -5,22 +5,22 @@
 
 layout(local_size_x = kExactGroupX, local_size_y = kExactGroupY) in;
 layout(std140, binding = kExactParamsBinding) uniform Params { ExactParams params; };
-layout(binding = kExactValueUnit) uniform sampler2D value_texture;
-layout(binding = kExactSlopeXUnit) uniform sampler2D slope_x_texture;
-layout(binding = kExactSlopeYUnit) uniform sampler2D slope_y_texture;
-layout(binding = kExactLeafUnit) uniform usampler2D leaf_texture;
-layout(binding = kExactValueImage) writeonly uniform image2D radiance_image;
+layout(binding = kExactValueImage, rgba32f) readonly uniform image2D value_image;
+layout(binding = kExactSlopeXImage, rgba32f) readonly uniform image2D slope_x_image;
+layout(binding = kExactSlopeYImage, rgba32f) readonly uniform image2D slope_y_image;
+layout(binding = kExactLeafImage, r32ui) readonly uniform uimage2D leaf_image;
+layout(binding = kExactRadianceImage) writeonly uniform image2D radiance_image;
 
 void main() {
     ivec2 at = params.origin + ivec2(gl_GlobalInvocationID.xy);
     if (at.x >= params.extent.x || at.y >= params.extent.y) return;
-    int h = kExactTile;
-    while (h > 1 && int(texelFetch(leaf_texture, at / h * h, 0).r) < h) h /= 2;
+    int h = kExactCell;
+    if (int(imageLoad(leaf_image, at / 8 * 8).r) < 8) h = 4;
+    if (h == 4 && int(imageLoad(leaf_image, at / 4 * 4).r) < 4) h = 2;
+    if (h == 2 && int(imageLoad(leaf_image, at / 2 * 2).r) < 2) h = 1;
     ivec2 corner = at / h * h;
-    ivec2 tile = at / kExactTile;
-    ivec2 block = tile * kExactBlock + corner - tile * kExactTile;
     vec3 sum = vec3(0.0);
-    if (h == 1) sum = texelFetch(value_texture, block, 0).rgb;
+    if (h == 1) sum = imageLoad(value_image, corner).rgb;
     if (h > 1) {
         // At the canvas's edges the far corners were moved inwards.
         ivec2 last = params.canvas - 1 - ivec2(0, params.first_row);
@@ -28,12 +28,12 @@ void main() {
         vec2 u = vec2(at - corner) / max(size, vec2(1.0));
         for (int k = 0; k < 4; ++k) {
             ivec2 which = ivec2(k & 1, k >> 1);
-            ivec2 from = block + which * h;
+            ivec2 from = corner + which * h;
             vec2 w = mix(1.0 - u, u, equal(which, ivec2(1)));
             vec2 away = vec2(at - corner) - vec2(which) * size;
             // Half of what the slopes foretell, weighted: exact for quadratics.
-            vec3 value = texelFetch(value_texture, from, 0).rgb + 0.5 * (texelFetch(slope_x_texture, from, 0).rgb * away.x +
-                         texelFetch(slope_y_texture, from, 0).rgb * away.y);
+            vec3 value = imageLoad(value_image, from).rgb + 0.5 * (imageLoad(slope_x_image, from).rgb * away.x +
+                         imageLoad(slope_y_image, from).rgb * away.y);
             sum += w.x * w.y * value;
         }
         sum = max(sum, vec3(0.0));

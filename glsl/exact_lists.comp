@@ -8,11 +8,11 @@ layout(local_size_x = kExactGroupX, local_size_y = kExactGroupY) in;
 layout(std140, binding = kExactParamsBinding) uniform Params { ExactParams params; };
 layout(binding = kExactHeadsUnit) uniform usamplerBuffer heads;
 layout(binding = kExactEntriesUnit) uniform samplerBuffer entries;
-layout(binding = kExactIdsUnit) uniform usamplerBuffer ids;
+layout(binding = kExactLightsUnit) uniform samplerBuffer lights;
 layout(binding = kExactSectorsUnit) uniform samplerBuffer sectors;
 layout(std430, binding = kExactHeadsStorage) writeonly buffer Heads { uvec4 out_heads[]; };
 layout(std430, binding = kExactEntriesStorage) writeonly buffer Entries { vec4 out_entries[]; };
-layout(std430, binding = kExactIdsStorage) writeonly buffer Ids { uint out_ids[]; };
+layout(std430, binding = kExactLightsStorage) writeonly buffer Lights { vec4 out_lights[]; };
 layout(std430, binding = kExactCountersStorage) buffer Counters { uint counters[]; };
 
 const int kArcs = 1;      // the parent's lists hold arcs
@@ -114,13 +114,13 @@ bool arc_faces(vec2 from, float radius, vec4 ends, vec2 centre) {
     return most + radius * half_tile * 1.4143 > radius * radius;
 }
 
-void write_head(int list, uint first, uvec4 counts, uvec4 lights) {
+void write_head(int list, uint first, uvec4 counts, uvec4 emitting) {
     if (params.wide != 0) {
         out_heads[2 * list] = counts;
-        out_heads[2 * list + 1] = uvec4(first, lights.x | (lights.y << 16), lights.z | (lights.w << 16), 0u);
+        out_heads[2 * list + 1] = uvec4(first, emitting.x | (emitting.y << 16), emitting.z | (emitting.w << 16), 0u);
     } else {
-        out_heads[list] = uvec4(first, counts.x | (lights.x << 16), counts.y | (lights.y << 16),
-                                counts.z | (lights.z << 8) | (counts.w << 16) | (lights.w << 24));
+        out_heads[list] = uvec4(first, counts.x | (emitting.x << 16), counts.y | (emitting.y << 16),
+                                counts.z | (emitting.z << 8) | (counts.w << 16) | (emitting.w << 24));
     }
 }
 
@@ -178,7 +178,6 @@ void main() {
         vec2 half_chord = vec2(-axis.y, axis.x) * e.z;
         if (round_depths(c, e.z, low, high, hides) && hides) hide_behind(c + half_chord, c - half_chord, high - e.z);
     }
-    bool lit = false;
     bool sky = params.sky_kind != 0 && !dark && any(equal(max(hidden[0], hidden[1]), vec4(kFar)));
     float light_high = -kFar;
     uint room = 0u;
@@ -217,9 +216,9 @@ void main() {
         }
     }
 
-    // Beyond the last light nothing matters, unless there is a sky.
-    lit = light_high > -kFar;
-    float limit = sky ? kFar : light_high;
+    // Beyond the last light nothing matters, unless there is a sky, which what lies beyond may hide.
+    bool lit = light_high > -kFar;
+    float limit = params.sky_kind != 0 ? kFar : light_high;
     if (!lit && !sky) room = 0u;
     uint begin = 0u;
     if (room > 0u) begin = atomicAdd(counters[kExactCountEntries], room);
@@ -237,7 +236,7 @@ void main() {
         if (straight_depths(e.xy - centre, e.zw - centre, low, high, hides) && low <= limit &&
             may_be_seen(e.xy - centre, e.zw - centre, 0.0, low)) {
             out_entries[to] = e;
-            out_ids[to] = texelFetch(ids, int(first + i)).r;
+            out_lights[to] = texelFetch(lights, int(first + i));
             ++to;
             ++kept.x;
             if (i < straight_lights) ++kept_lights.x;
@@ -248,7 +247,7 @@ void main() {
         if (round_depths(e.xy - centre, e.z, low, high, hides) && low <= limit &&
             may_be_seen(e.xy - centre, e.xy - centre, e.z, low)) {
             out_entries[to] = e;
-            out_ids[to] = texelFetch(ids, int(first_disc + i)).r;
+            out_lights[to] = texelFetch(lights, int(first_disc + i));
             ++to;
             ++kept.y;
             if (i < disc_lights) ++kept_lights.y;
@@ -262,7 +261,7 @@ void main() {
             may_be_seen(e.xy - centre, e.xy - centre, e.z, low) && arc_faces(e.xy - centre, e.z, ends, centre)) {
             out_entries[to] = e;
             out_entries[to + 1u] = ends;
-            out_ids[to] = texelFetch(ids, int(place)).r;
+            out_lights[to] = texelFetch(lights, int(place));
             to += 2u;
             ++kept.z;
             if (i < arc_lights) ++kept_lights.z;
@@ -274,7 +273,7 @@ void main() {
         if (round_depths(e.xy - centre, e.z, low, high, hides) && low <= limit &&
             may_be_seen(e.xy - centre, e.xy - centre, e.z, low)) {
             for (uint k = 0u; k < 4u; ++k) out_entries[to + k] = texelFetch(entries, int(place + k));
-            out_ids[to] = texelFetch(ids, int(place)).r;
+            out_lights[to] = texelFetch(lights, int(place));
             to += 4u;
             ++kept.w;
             if (i < ellipse_lights) ++kept_lights.w;

@@ -1,4 +1,4 @@
-// Reads the corners of all tiles; writes the mean of their light, which tolerances are relative to. One thread sums one
+// Reads one corner of each tile; writes the mean of their light, which tolerances are relative to. One thread sums one
 // column of tiles; a second run with one thread sums those.
 #version 430 core
 #include "exact.h"
@@ -15,7 +15,7 @@ void main() {
     float sum = 0.0;
     if (params.level == 0) {
         for (int y = 0; y < params.tiles.y; ++y) {
-            vec3 c = texelFetch(value_texture, ivec2(x, y) * kExactBlock, 0).rgb;
+            vec3 c = texelFetch(value_texture, ivec2(x, y) * kExactTile, 0).rgb;
             sum += max(c.r, max(c.g, c.b));
         }
         out_means[1 + x] = sum / float(params.tiles.y);

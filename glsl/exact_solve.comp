@@ -12,8 +12,7 @@ layout(std140, binding = kExactParamsBinding) uniform Params { ExactParams param
 layout(binding = kExactDistanceUnit) uniform sampler2D distance_texture;
 layout(binding = kExactHeadsUnit) uniform usamplerBuffer heads;
 layout(binding = kExactEntriesUnit) uniform samplerBuffer entries;
-layout(binding = kExactIdsUnit) uniform usamplerBuffer ids;
-layout(binding = kExactPieceLightUnit) uniform samplerBuffer piece_light;
+layout(binding = kExactLightsUnit) uniform samplerBuffer lights;
 layout(binding = kExactSectorsUnit) uniform samplerBuffer sectors;
 layout(binding = kExactSkyUnit) uniform samplerBuffer sky_nodes;
 layout(binding = kExactPointsUnit) uniform usamplerBuffer points;
@@ -284,9 +283,8 @@ void change(bvec4 changed, float sector_angle) {
     gather(changed, now, sector_angle);
     bvec4 found = greaterThanEqual(near_entry, vec4(0.0));
     ivec4 entry = ivec4(max(near_entry, vec4(0.0)));
-    uvec4 id = uvec4(texelFetch(ids, entry.x).r, texelFetch(ids, entry.y).r, texelFetch(ids, entry.z).r, texelFetch(ids, entry.w).r);
-    vec3 l0 = texelFetch(piece_light, int(id.x)).rgb, l1 = texelFetch(piece_light, int(id.y)).rgb;
-    vec3 l2 = texelFetch(piece_light, int(id.z)).rgb, l3 = texelFetch(piece_light, int(id.w)).rgb;
+    vec4 l0 = texelFetch(lights, entry.x), l1 = texelFetch(lights, entry.y);
+    vec4 l2 = texelFetch(lights, entry.z), l3 = texelFetch(lights, entry.w);
     vec3 sky = kSky == 1 ? params.sky.rgb : vec3(0.0);
     vec4 r = pick(vec4(sky.r), vec4(l0.r, l1.r, l2.r, l3.r), found);
     vec4 g = pick(vec4(sky.g), vec4(l0.g, l1.g, l2.g, l3.g), found);
@@ -299,7 +297,7 @@ void change(bvec4 changed, float sector_angle) {
         g = pick(sg, g, found);
         b = pick(sb, b, found);
     }
-    id = uvec4(found.x ? id.x + 2u : 1u, found.y ? id.y + 2u : 1u, found.z ? id.z + 2u : 1u, found.w ? id.w + 2u : 1u);
+    uvec4 id = uvec4(pick(vec4(1.0), vec4(l0.a, l1.a, l2.a, l3.a) + 2.0, found));
     vec4 end_depth = vec4(1.0);
     vec4 clearance = vec4(kFar);
     if (kSlopes != 0) {
@@ -370,22 +368,22 @@ void change(bvec4 changed, float sector_angle) {
     top_id = uvec4(changed.x ? id.x : top_id.x, changed.y ? id.y : top_id.y, changed.z ? id.z : top_id.z, changed.w ? id.w : top_id.w);
 }
 
-int sectors_done(ivec2 block) { return params.continues != 0 ? int(imageLoad(slope_y_image, block).a) : 0; }
+int sectors_done(ivec2 point) { return params.continues != 0 ? int(imageLoad(slope_y_image, point).a) : 0; }
 
-void store(ivec2 block, int done, vec3 sum, uint seen, vec4 x, vec3 y) {
+void store(ivec2 point, int done, vec3 sum, uint seen, vec4 x, vec3 y) {
     vec4 value = vec4(sum / kTwoPi, float(seen & 0xffffffu));
     x /= kTwoPi;
     y /= kTwoPi;
     if (params.continues != 0) {
-        vec4 before = imageLoad(value_image, block);
+        vec4 before = imageLoad(value_image, point);
         value.a = float((seen + uint(before.a)) & 0xffffffu);
         value.rgb += before.rgb;
-        x += imageLoad(slope_x_image, block);
-        y += imageLoad(slope_y_image, block).rgb;
+        x += imageLoad(slope_x_image, point);
+        y += imageLoad(slope_y_image, point).rgb;
     }
-    imageStore(value_image, block, value);
-    imageStore(slope_x_image, block, x);
-    imageStore(slope_y_image, block, vec4(y, float(done)));
+    imageStore(value_image, point, value);
+    imageStore(slope_x_image, point, x);
+    imageStore(slope_y_image, point, vec4(y, float(done)));
 }
 
 ivec2 local_point(int first, int index, int count) {
@@ -393,22 +391,19 @@ ivec2 local_point(int first, int index, int count) {
     return ivec2(place & 0xff, place >> 8);
 }
 
-// Four points of one tile: its corners, or four of those asked for; the last are repeated.
+// Four of the points that a tile asks for; the last are repeated.
 void solve(int tile_index, int first, int count) {
     int row = tile_index / params.tiles.x;
     ivec2 tile = ivec2(tile_index - row * params.tiles.x, row);
-    ivec2 p0 = ivec2(0), p1 = ivec2(kExactTile, 0), p2 = ivec2(0, kExactTile), p3 = ivec2(kExactTile);
-    if (params.all_points == 0) {
-        int at = params.first_point + tile_index * params.tile_points;
-        p0 = local_point(at, first, count);
-        p1 = local_point(at, first + 1, count);
-        p2 = local_point(at, first + 2, count);
-        p3 = local_point(at, first + 3, count);
-    }
-    ivec2 origin = tile * kExactBlock;
-    int s = sectors_done(origin + p0);
+    ivec2 origin = tile * kExactTile;
+    int at = params.first_point + tile_index * params.tile_points;
+    ivec2 p0 = origin + local_point(at, first, count);
+    ivec2 p1 = origin + local_point(at, first + 1, count);
+    ivec2 p2 = origin + local_point(at, first + 2, count);
+    ivec2 p3 = origin + local_point(at, first + 3, count);
+    int s = sectors_done(p0);
     if (s >= params.sectors) return;
-    ivec2 corner = tile * kExactTile + ivec2(0, params.first_row);
+    ivec2 corner = ivec2(0, params.first_row);
     ivec2 last = params.canvas - 1;
     ivec2 x0 = min(corner + p0, last), x1 = min(corner + p1, last), x2 = min(corner + p2, last), x3 = min(corner + p3, last);
     px = vec4(x0.x, x1.x, x2.x, x3.x) + 0.5;
@@ -494,18 +489,16 @@ void solve(int tile_index, int first, int count) {
 
     // A list that takes more than a whole budget is cut off.
     if (s < params.sectors || budget <= 0) atomicAdd(counters[s < params.sectors ? kExactCountUnfinished : kExactCountSpent], 1u);
-    store(origin + p0, s, vec3(sum_r.x, sum_g.x, sum_b.x), signature.x, vec4(slope_x_r.x, slope_x_g.x, slope_x_b.x, third.x), vec3(slope_y_r.x, slope_y_g.x, slope_y_b.x));
-    if (p1 != p0) store(origin + p1, s, vec3(sum_r.y, sum_g.y, sum_b.y), signature.y, vec4(slope_x_r.y, slope_x_g.y, slope_x_b.y, third.y), vec3(slope_y_r.y, slope_y_g.y, slope_y_b.y));
-    if (p2 != p1) store(origin + p2, s, vec3(sum_r.z, sum_g.z, sum_b.z), signature.z, vec4(slope_x_r.z, slope_x_g.z, slope_x_b.z, third.z), vec3(slope_y_r.z, slope_y_g.z, slope_y_b.z));
-    if (p3 != p2) store(origin + p3, s, vec3(sum_r.w, sum_g.w, sum_b.w), signature.w, vec4(slope_x_r.w, slope_x_g.w, slope_x_b.w, third.w), vec3(slope_y_r.w, slope_y_g.w, slope_y_b.w));
+    store(p0, s, vec3(sum_r.x, sum_g.x, sum_b.x), signature.x, vec4(slope_x_r.x, slope_x_g.x, slope_x_b.x, third.x), vec3(slope_y_r.x, slope_y_g.x, slope_y_b.x));
+    if (p1 != p0) store(p1, s, vec3(sum_r.y, sum_g.y, sum_b.y), signature.y, vec4(slope_x_r.y, slope_x_g.y, slope_x_b.y, third.y), vec3(slope_y_r.y, slope_y_g.y, slope_y_b.y));
+    if (p2 != p1) store(p2, s, vec3(sum_r.z, sum_g.z, sum_b.z), signature.z, vec4(slope_x_r.z, slope_x_g.z, slope_x_b.z, third.z), vec3(slope_y_r.z, slope_y_g.z, slope_y_b.z));
+    if (p3 != p2) store(p3, s, vec3(sum_r.w, sum_g.w, sum_b.w), signature.w, vec4(slope_x_r.w, slope_x_g.w, slope_x_b.w, third.w), vec3(slope_y_r.w, slope_y_g.w, slope_y_b.w));
 }
 
 void main() {
     int index = int(gl_GlobalInvocationID.x);
-    int jobs_given = params.all_points != 0 ? params.extent.x : int(counters[kExactCountLevel + 4 * params.level]);
-    if (index < jobs_given) {
-        uint job = params.all_points != 0 ? uint(index) : texelFetch(jobs, index).r;
-        int tile = int(job & 0xffffffu);
-        solve(tile, 4 * int(job >> 24), params.all_points != 0 ? 4 : int(counters[params.first_count + tile]));
-    }
+    if (index >= int(counters[kExactCountLevel + 4 * params.level])) return;
+    uint job = texelFetch(jobs, index).r;
+    int tile = int(job & 0xffffffu);
+    solve(tile, 4 * int(job >> 24), int(counters[params.first_count + tile]));
 }

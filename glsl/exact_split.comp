@@ -7,9 +7,9 @@
 layout(local_size_x = kExactGroupX, local_size_y = kExactGroupY) in;
 layout(std140, binding = kExactParamsBinding) uniform Params { ExactParams params; };
 layout(binding = kExactDistanceUnit) uniform sampler2D distance_texture;
-layout(binding = kExactValueUnit) uniform sampler2D value_texture;
-layout(binding = kExactSlopeXUnit) uniform sampler2D slope_x_texture;
-layout(binding = kExactSlopeYUnit) uniform sampler2D slope_y_texture;
+layout(binding = kExactValueImage, rgba32f) readonly uniform image2D value_image;
+layout(binding = kExactSlopeXImage, rgba32f) readonly uniform image2D slope_x_image;
+layout(binding = kExactSlopeYImage, rgba32f) readonly uniform image2D slope_y_image;
 layout(binding = kExactStateImage, r32ui) uniform uimage2D state_image;
 layout(binding = kExactLeafImage, r32ui) uniform uimage2D leaf_image;
 layout(std430, binding = kExactPointsStorage) writeonly buffer Points { uint out_points[]; };
@@ -18,8 +18,12 @@ layout(binding = kExactSkyUnit) uniform samplerBuffer mean_light;
 
 float largest(vec3 c) { return max(c.r, max(c.g, c.b)); }
 
-void ask(int tile_index, ivec2 origin, ivec2 local) {
-    if (imageAtomicOr(state_image, origin + local, 1u) != 0u) return;
+// Asks for a point once.
+void ask(ivec2 point) {
+    if (imageAtomicOr(state_image, point, 1u) != 0u) return;
+    ivec2 tile = min(point / kExactTile, params.tiles - 1);
+    ivec2 local = point - tile * kExactTile;
+    int tile_index = tile.y * params.tiles.x + tile.x;
     uint index = atomicAdd(counters[params.first_count + tile_index], 1u);
     out_points[params.first_point + tile_index * params.tile_points + int(index)] = uint(local.x | (local.y << 8));
 }
@@ -29,62 +33,66 @@ void main() {
     if (cell.x >= params.extent.x || cell.y >= params.extent.y) return;
     int h = params.cell;
     ivec2 corner = cell * h;  // first pixel, of the band
-    ivec2 tile = corner / kExactTile;
-    if (h < kExactTile) {
+    if (params.ask_first != 0) {
+        ask(corner);
+        return;
+    }
+    if (h < kExactCell) {
         // Only where the larger cell was split.
         ivec2 larger = corner / (2 * h) * (2 * h);
         if (int(imageLoad(leaf_image, larger).r) >= 2 * h) return;
     }
     ivec2 pixel = corner + ivec2(0, params.first_row);
     if (pixel.x >= params.canvas.x || pixel.y >= params.canvas.y) return;
-    ivec2 block = tile * kExactBlock + corner - tile * kExactTile;
 
     ivec2 middle = min(pixel + h / 2, params.canvas - 1);
     float room = texelFetch(distance_texture, middle + params.border, 0).r;
-    float reach = 0.7072 * float(h) + 0.01;
-    if (room < -reach) return;  // all of it inside a shape
+    float clear = 0.7072 * float(h) + 0.01;
+    if (room < -clear) return;  // all of it inside a shape
 
-    vec4 v0 = texelFetch(value_texture, block, 0);
-    vec4 v1 = texelFetch(value_texture, block + ivec2(h, 0), 0);
-    vec4 v2 = texelFetch(value_texture, block + ivec2(0, h), 0);
-    vec4 v3 = texelFetch(value_texture, block + ivec2(h, h), 0);
-    vec4 x0 = texelFetch(slope_x_texture, block, 0);
-    vec4 x1 = texelFetch(slope_x_texture, block + ivec2(h, 0), 0);
-    vec4 x2 = texelFetch(slope_x_texture, block + ivec2(0, h), 0);
-    vec4 x3 = texelFetch(slope_x_texture, block + ivec2(h, h), 0);
+    vec4 v0 = imageLoad(value_image, corner);
+    vec4 v1 = imageLoad(value_image, corner + ivec2(h, 0));
+    vec4 v2 = imageLoad(value_image, corner + ivec2(0, h));
+    vec4 v3 = imageLoad(value_image, corner + ivec2(h, h));
+    vec4 x0 = imageLoad(slope_x_image, corner);
+    vec4 x1 = imageLoad(slope_x_image, corner + ivec2(h, 0));
+    vec4 x2 = imageLoad(slope_x_image, corner + ivec2(0, h));
+    vec4 x3 = imageLoad(slope_x_image, corner + ivec2(h, h));
     float b0 = largest(v0.rgb), b1 = largest(v1.rgb), b2 = largest(v2.rgb), b3 = largest(v3.rgb);
     float darkest = min(min(b0, b1), min(b2, b3));
     float brightest = max(max(b0, b1), max(b2, b3));
     float relative_to = params.tolerance * (0.25 * (b0 + b1 + b2 + b3) + params.floor_share * texelFetch(mean_light, 0).r);
     bool same = v0.a == v1.a && v0.a == v2.a && v0.a == v3.a;
 
-    bool split = room < reach;
+    bool split = room < clear;
     // The interpolation is exact for quadratics; what it leaves out is at most 0.05 h^3 times the third derivative.
     float third = max(max(x0.a, x1.a), max(x2.a, x3.a));
     split = split || 0.05 * float(h * h * h) * third > relative_to;
     if (!same) {
         split = split || h > params.kink_cell || (params.strict_dark != 0 && darkest <= 0.0 && brightest > 0.0);
         // A shadow's edge bends the light by at most the change of its slope across the cell.
-        vec4 y0 = texelFetch(slope_y_texture, block, 0);
-        vec4 y1 = texelFetch(slope_y_texture, block + ivec2(h, 0), 0);
-        vec4 y2 = texelFetch(slope_y_texture, block + ivec2(0, h), 0);
-        vec4 y3 = texelFetch(slope_y_texture, block + ivec2(h, h), 0);
+        vec4 y0 = imageLoad(slope_y_image, corner);
+        vec4 y1 = imageLoad(slope_y_image, corner + ivec2(h, 0));
+        vec4 y2 = imageLoad(slope_y_image, corner + ivec2(0, h));
+        vec4 y3 = imageLoad(slope_y_image, corner + ivec2(h, h));
         vec3 dx = max(abs(x1.rgb - x0.rgb), abs(x3.rgb - x2.rgb));
         vec3 dy = max(abs(y2.rgb - y0.rgb), abs(y3.rgb - y1.rgb));
         float bend = max(largest(dx), largest(dy));
         split = split || 0.125 * float(h) * bend > relative_to;
+        // One narrower than the cell shows in the values: they differ from what the slopes foretell.
+        float reach = 0.5 * float(h);
+        vec3 off = max(max(abs(v1.rgb - v0.rgb - reach * (x0.rgb + x1.rgb)), abs(v3.rgb - v2.rgb - reach * (x2.rgb + x3.rgb))),
+                       max(abs(v2.rgb - v0.rgb - reach * (y0.rgb + y2.rgb)), abs(v3.rgb - v1.rgb - reach * (y1.rgb + y3.rgb))));
+        split = split || 0.5 * largest(off) > relative_to;
     }
     if (!split) return;
 
     int half_cell = h / 2;
     imageStore(leaf_image, corner, uvec4(half_cell));
-    int tile_index = tile.y * params.tiles.x + tile.x;
-    ivec2 origin = tile * kExactBlock;
-    ivec2 local = corner - tile * kExactTile;
-    ask(tile_index, origin, local + ivec2(half_cell, 0));
-    ask(tile_index, origin, local + ivec2(0, half_cell));
-    ask(tile_index, origin, local + ivec2(half_cell));
+    ask(corner + ivec2(half_cell, 0));
+    ask(corner + ivec2(0, half_cell));
+    ask(corner + ivec2(half_cell));
     if (half_cell == 1) return;  // pixels: those of the next cell are asked for by that cell, if at all
-    ask(tile_index, origin, local + ivec2(h, half_cell));
-    ask(tile_index, origin, local + ivec2(half_cell, h));
+    ask(corner + ivec2(h, half_cell));
+    ask(corner + ivec2(half_cell, h));
 }

@@ -13,7 +13,7 @@
 namespace penumbra {
 namespace {
 
-constexpr int kLevels = 5;  // cells of 16, 8, 4, 2 and 1 pixels
+constexpr int kLevels = 4;  // cells of 8, 4, 2 and 1 pixels
 
 // Iterations that the solver spends on one point in one dispatch at most (exact_solve.comp).
 constexpr std::uint64_t kMostWork = 30'000;
@@ -52,7 +52,7 @@ struct LevelPoints {
 // What the steps of one frame share.
 struct ExactPass::Band {
     glsl::ExactParams params{};
-    gl::BufferTexture root_entries, root_ids, piece_light, sectors, sky;
+    gl::BufferTexture root_entries, root_lights, sectors, sky;
     gl::Texture2D value, slope_x, slope_y, state, leaf;
     glm::ivec2 coarse_tiles{0};
     std::array<LevelPoints, kLevels> levels{};
@@ -69,8 +69,8 @@ ExactPass::ExactPass(const std::string& shader_dir)
       counters_(GL_R32UI, 64) {}
 
 std::size_t ExactPass::bytes() const {
-    return coarse_heads_.bytes() + coarse_entries_.bytes() + coarse_ids_.bytes() + heads_.bytes() + entries_.bytes() +
-           ids_.bytes() + points_.bytes() + counters_.bytes() + means_.bytes();
+    return coarse_heads_.bytes() + coarse_entries_.bytes() + coarse_lights_.bytes() + heads_.bytes() + entries_.bytes() +
+           lights_.bytes() + points_.bytes() + counters_.bytes() + means_.bytes();
 }
 
 gl::ComputeProgram& ExactPass::lists_for(const ExactPlan& exact) {
@@ -101,12 +101,12 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
     // One level of lists: from a parent's, or from the list of all pieces. Lists claim room as they are made; when it was
     // too little, all is made again with more.
     const auto make = [&](glm::ivec2 tiles, int tile_px, int ratio, bool wide, gl::StorageBuffer& heads,
-                          gl::StorageBuffer& entries, gl::StorageBuffer& ids) {
+                          gl::StorageBuffer& entries, gl::StorageBuffer& lights) {
         heads = at_least(std::move(heads), GL_RGBA32UI, lists_of(tiles) * (wide ? 32 : 16));
         std::size_t capacity = std::max<std::size_t>(entries.bytes() / 16, 4 * lists_of(tiles) + 1024);
         for (;;) {
             entries = at_least(std::move(entries), GL_RGBA32F, capacity * 16);
-            ids = at_least(std::move(ids), GL_R32UI, capacity * 4);
+            lights = at_least(std::move(lights), GL_RGBA32F, capacity * 16);
             const std::uint32_t zero[2] = {};
             counters_.write(0, zero, sizeof(zero));
             glsl::ExactParams params = band.params;
@@ -119,22 +119,22 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
             params.extent = {tiles.x, tiles.y * exact.sectors};
             if (ratio == 0) {
                 band.root_entries.bind_texture(glsl::kExactEntriesUnit);
-                band.root_ids.bind_texture(glsl::kExactIdsUnit);
+                band.root_lights.bind_texture(glsl::kExactLightsUnit);
             } else {
                 coarse_heads_.bind_texture(glsl::kExactHeadsUnit);
                 coarse_entries_.bind_texture(glsl::kExactEntriesUnit);
-                coarse_ids_.bind_texture(glsl::kExactIdsUnit);
+                coarse_lights_.bind_texture(glsl::kExactLightsUnit);
             }
             band.sectors.bind_texture(glsl::kExactSectorsUnit);
             counters_.bind_storage(glsl::kExactCountersStorage);
             heads.bind_storage(glsl::kExactHeadsStorage);
             entries.bind_storage(glsl::kExactEntriesStorage);
-            ids.bind_storage(glsl::kExactIdsStorage);
+            lights.bind_storage(glsl::kExactLightsStorage);
             work.dispatches += program.dispatch(params, params.extent);
             std::uint32_t used[2] = {};
             counters_.read(0, used, sizeof(used));if(getenv("DBG"))fprintf(stderr,"lists %dx%d ratio %d used %u work %u cap %zu counts %d %d %d %d lights %d %d %d %d\n",tiles.x,tiles.y,ratio,used[0],used[1],capacity,params.root_counts.x,params.root_counts.y,params.root_counts.z,params.root_counts.w,params.root_lights.x,params.root_lights.y,params.root_lights.z,params.root_lights.w);
             if (used[0] <= capacity) {
-                work.bytes += used[0] * std::size_t(20) + heads.bytes();
+                work.bytes += used[0] * std::size_t(32) + heads.bytes();
                 return used[1];
             }
             capacity = used[0] + std::size_t(used[0]) / 4;
@@ -146,10 +146,10 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
     int ratio = 0;
     if (exact.coarse_tile > 0) {
         band.coarse_tiles = {divided_up(plan.canvas.x, exact.coarse_tile), divided_up(band.rows, exact.coarse_tile)};
-        make(band.coarse_tiles, exact.coarse_tile, 0, true, coarse_heads_, coarse_entries_, coarse_ids_);
+        make(band.coarse_tiles, exact.coarse_tile, 0, true, coarse_heads_, coarse_entries_, coarse_lights_);
         ratio = exact.coarse_tile / glsl::kExactTile;
     }
-    const std::uint32_t list_work = make(band.params.tiles, glsl::kExactTile, ratio, false, heads_, entries_, ids_);
+    const std::uint32_t list_work = make(band.params.tiles, glsl::kExactTile, ratio, false, heads_, entries_, lights_);
     if(getenv("DBGH")){ std::vector<std::uint32_t> h(4*lists_of(band.params.tiles)); heads_.read(0,h.data(),h.size()*4); double n[4]={},l[4]={}; int open=0,dark=0,mx=0; std::size_t at=0; for(std::size_t i=0;i<h.size();i+=4){ if(h[i]==glsl::kExactOpen) ++open; else if(h[i]==glsl::kExactDark) ++dark; else { int c[4]={int(h[i+1]&0xffff),int(h[i+2]&0xffff),int(h[i+3]&0xff),int((h[i+3]>>16)&0xff)}; int t=0; for(int k=0;k<4;++k){n[k]+=c[k]; t+=c[k];} if(t>mx){mx=t;at=i/4;} l[0]+=h[i+1]>>16; } } double L=h.size()/4; fprintf(stderr,"lists %g open %d dark %d avg %.2f %.2f %.2f %.2f max %d at tile %zu %zu sector %zu\n",L,open,dark,n[0]/L,n[1]/L,n[2]/L,n[3]/L,mx,(at/exact.sectors)%band.params.tiles.x,(at/exact.sectors)/band.params.tiles.x,at%exact.sectors);}
     band.always_finishes = std::uint64_t(list_work) * static_cast<std::uint64_t>(exact.sectors) < kMostWork;
     return work;
@@ -160,36 +160,29 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
     glsl::ExactParams params = band.params;
     params.level = level;
     band.levels[static_cast<std::size_t>(level)].write_to(params);
-    params.all_points = level == 0 ? 1 : 0;
     const PackedOutline& outline = plan.exact.outline;
     gl::ComputeProgram& program =
         solver_for({outline.counts[2] > 0, outline.counts[3] > 0, params.sky_kind, level < kLevels - 1});
     const int tiles = params.tiles.x * params.tiles.y;
     params.extent = {tiles, 1};
-    if (level > 0) {
-        jobs_.bind_storage(glsl::kExactPointsStorage);
-        counters_.bind_storage(glsl::kExactCountersStorage);
-        work.dispatches += gather_.dispatch(params, params.extent);
-    }
+    jobs_.bind_storage(glsl::kExactPointsStorage);
+    counters_.bind_storage(glsl::kExactCountersStorage);
+    work.dispatches += gather_.dispatch(params, params.extent);
     band.value.bind_image(glsl::kExactValueImage, GL_READ_WRITE);
     band.slope_x.bind_image(glsl::kExactSlopeXImage, GL_READ_WRITE);
     band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_WRITE);
     field.distance.bind_texture(glsl::kExactDistanceUnit);
     heads_.bind_texture(glsl::kExactHeadsUnit);
     entries_.bind_texture(glsl::kExactEntriesUnit);
-    ids_.bind_texture(glsl::kExactIdsUnit);
+    lights_.bind_texture(glsl::kExactLightsUnit);
     points_.bind_texture(glsl::kExactPointsUnit);
     jobs_.bind_texture(glsl::kExactJobsUnit);
-    band.piece_light.bind_texture(glsl::kExactPieceLightUnit);
     band.sectors.bind_texture(glsl::kExactSectorsUnit);
     band.sky.bind_texture(glsl::kExactSkyUnit);
     counters_.bind_storage(glsl::kExactCountersStorage);
     counters_.bind_indirect();
     for (;;) {
-        if (level == 0)
-            program.dispatch(params, params.extent);
-        else
-            program.dispatch_indirect(params, 4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1));
+        program.dispatch_indirect(params, 4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1));
         ++work.dispatches;
         if (band.always_finishes) break;
         std::uint32_t unfinished = 0;
@@ -208,8 +201,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
     const PackedOutline& outline = exact.outline;
     Band band;
     band.root_entries = gl::BufferTexture(GL_RGBA32F, outline.entries.data(), outline.entries.size() * 16);
-    band.root_ids = gl::BufferTexture(GL_R32UI, outline.ids.data(), outline.ids.size() * 4);
-    band.piece_light = gl::BufferTexture(GL_RGBA32F, outline.light.data(), outline.light.size() * 16);
+    band.root_lights = gl::BufferTexture(GL_RGBA32F, outline.lights_of.data(), outline.lights_of.size() * 16);
     band.sectors = sector_table(exact);
     const std::vector<glm::vec4> nodes =
         exact.sky_nodes > 0 ? sky_nodes(sky, exact.sky_nodes, plan.radiance_scale) : std::vector<glm::vec4>();
@@ -239,7 +231,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         std::size_t room = 0;
         for (std::size_t level = 0; level < kLevels; ++level) {
             band.levels[level] = {room, exact_level_points(static_cast<int>(level)), glsl::kExactCountTiles + level * tiles};
-            if (level > 0) room += tiles * band.levels[level].of_tile;
+            room += tiles * band.levels[level].of_tile;
         }
         points_ = at_least(std::move(points_), GL_R32UI, room * 4);
         jobs_ = at_least(std::move(jobs_), GL_R32UI, tiles * (1 + band.levels.back().of_tile / 4) * 4);
@@ -251,17 +243,38 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         means_ = at_least(std::move(means_), GL_R32F, (static_cast<std::size_t>(params.tiles.x) + 1) * 4);
         record("exact lists", {params.tiles.x, params.tiles.y * exact.sectors}, [&] { return make_lists(plan, band); });
 
-        const glm::ivec2 blocks = params.tiles * glsl::kExactBlock;
-        band.value = settings.take(GL_RGBA32F, blocks);
-        band.slope_x = settings.take(GL_RGBA32F, blocks);
-        band.slope_y = settings.take(GL_RGBA32F, blocks);
-        band.state = settings.take(GL_R32UI, blocks);
+        const glm::ivec2 grid = params.tiles * glsl::kExactTile + 1;  // of points
+        band.value = settings.take(GL_RGBA32F, grid);
+        band.slope_x = settings.take(GL_RGBA32F, grid);
+        band.slope_y = settings.take(GL_RGBA32F, grid);
+        band.state = settings.take(GL_R32UI, grid);
         band.leaf = settings.take(GL_R32UI, params.tiles * glsl::kExactTile);
-        const std::uint32_t unasked = 0, whole = glsl::kExactTile;
+        const std::uint32_t unasked = 0, whole = glsl::kExactCell;
         band.state.fill(GL_RED_INTEGER, GL_UNSIGNED_INT, &unasked);
         band.leaf.fill(GL_RED_INTEGER, GL_UNSIGNED_INT, &whole);
 
-        record("exact points 16", {4 * params.tiles.x, params.tiles.y}, [&] { return solve(plan, field, band, 0); });
+        const auto split = [&](int level, bool ask_first) {
+            PassWork work;
+            field.distance.bind_texture(glsl::kExactDistanceUnit);
+            band.value.bind_image(glsl::kExactValueImage, GL_READ_ONLY);
+            band.slope_x.bind_image(glsl::kExactSlopeXImage, GL_READ_ONLY);
+            band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_ONLY);
+            band.state.bind_image(glsl::kExactStateImage, GL_READ_WRITE);
+            band.leaf.bind_image(glsl::kExactLeafImage, GL_READ_WRITE);
+            points_.bind_storage(glsl::kExactPointsStorage);
+            counters_.bind_storage(glsl::kExactCountersStorage);
+            means_.bind_texture(glsl::kExactSkyUnit);
+            glsl::ExactParams p = params;
+            p.ask_first = ask_first ? 1 : 0;
+            p.cell = glsl::kExactCell >> level;
+            p.extent = params.tiles * (glsl::kExactTile / p.cell) + (ask_first ? 1 : 0);
+            band.levels[static_cast<std::size_t>(ask_first ? 0 : level + 1)].write_to(p);
+            work.dispatches = split_.dispatch(p, p.extent);
+            return work;
+        };
+        const auto points_name = [](int level) { return "exact points " + std::to_string(glsl::kExactCell >> level); };
+        record("exact cells", params.tiles * 2, [&] { return split(0, true); });
+        record(points_name(0).c_str(), params.tiles * 2, [&] { return solve(plan, field, band, 0); });
         record("exact mean", {params.tiles.x, 1}, [&] {
             PassWork work;
             band.value.bind_texture(glsl::kExactValueUnit);
@@ -276,36 +289,17 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             return work;
         });
         for (int level = 0; level + 1 < kLevels; ++level) {
-            const int cell = glsl::kExactTile >> level;
-            record("exact cells", params.tiles << level, [&] {
-                PassWork work;
-                field.distance.bind_texture(glsl::kExactDistanceUnit);
-                band.value.bind_texture(glsl::kExactValueUnit);
-                band.slope_x.bind_texture(glsl::kExactSlopeXUnit);
-                band.slope_y.bind_texture(glsl::kExactSlopeYUnit);
-                band.state.bind_image(glsl::kExactStateImage, GL_READ_WRITE);
-                band.leaf.bind_image(glsl::kExactLeafImage, GL_READ_WRITE);
-                points_.bind_storage(glsl::kExactPointsStorage);
-                counters_.bind_storage(glsl::kExactCountersStorage);
-                means_.bind_texture(glsl::kExactSkyUnit);
-                glsl::ExactParams p = params;
-                p.level = level;
-                p.cell = cell;
-                p.extent = params.tiles << level;
-                band.levels[static_cast<std::size_t>(level) + 1].write_to(p);
-                work.dispatches = split_.dispatch(p, p.extent);
-                return work;
-            });
-            const std::string name = "exact points " + std::to_string(cell / 2);
-            record(name.c_str(), blocks, [&] { return solve(plan, field, band, level + 1); });
+            const glm::ivec2 cells = params.tiles * (2 << level);
+            record("exact cells", cells, [&] { return split(level, false); });
+            record(points_name(level + 1).c_str(), cells * 2, [&] { return solve(plan, field, band, level + 1); });
         }
         record("exact fill", {plan.canvas.x, band.rows}, [&] {
             PassWork work;
-            band.value.bind_texture(glsl::kExactValueUnit);
-            band.slope_x.bind_texture(glsl::kExactSlopeXUnit);
-            band.slope_y.bind_texture(glsl::kExactSlopeYUnit);
-            band.leaf.bind_texture(glsl::kExactLeafUnit);
-            out.bind_image(glsl::kExactValueImage, GL_WRITE_ONLY);
+            band.value.bind_image(glsl::kExactValueImage, GL_READ_ONLY);
+            band.slope_x.bind_image(glsl::kExactSlopeXImage, GL_READ_ONLY);
+            band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_ONLY);
+            band.leaf.bind_image(glsl::kExactLeafImage, GL_READ_ONLY);
+            out.bind_image(glsl::kExactRadianceImage, GL_WRITE_ONLY);
             glsl::ExactParams p = params;
             p.extent = {plan.canvas.x, band.rows};
             work.dispatches = fill_.dispatch(p, p.extent, settings.pixels);
@@ -316,7 +310,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         if (!getenv("DBGC") && counted[glsl::kExactCountSpent] != 0)
             throw DeviceError("The scene is too dense for the method 'exact' on this device: at " +
                               std::to_string(counted[glsl::kExactCountSpent]) + " points its loops ran out of iterations.");
-        points_solved_ += 4 * tiles + std::accumulate(counted.begin() + glsl::kExactCountTiles, counted.end(), std::size_t(0));
+        points_solved_ += std::accumulate(counted.begin() + glsl::kExactCountTiles, counted.end(), std::size_t(0));
         if (getenv("DBGC")) { double n=counted[11]; fprintf(stderr,"jobs %g steps %.1f straights %.1f discs %.1f changes %.1f\n",n,counted[0]/n,counted[1]/n,counted[2]/n,counted[7]/n);}
         if (getenv("DBG")) for (std::size_t level = 1; level < kLevels; ++level) { std::size_t n=0; for (std::size_t i=0;i<tiles;++i) n+=counted[glsl::kExactCountTiles+level*tiles+i]; fprintf(stderr,"points level %zu: %zu\n",level,n);}
         settings.give(std::move(band.value));

@@ -52,8 +52,8 @@ private:
     gl::ComputeProgram gather_;
     gl::ComputeProgram mean_;
     gl::ComputeProgram fill_;
-    gl::StorageBuffer coarse_heads_, coarse_entries_, coarse_ids_;
-    gl::StorageBuffer heads_, entries_, ids_;
+    gl::StorageBuffer coarse_heads_, coarse_entries_, coarse_lights_;
+    gl::StorageBuffer heads_, entries_, lights_;
     gl::StorageBuffer points_, jobs_, counters_, means_;
     std::size_t points_solved_ = 0;
 };

@@ -35,8 +35,8 @@ struct ExactPlan {
 
 ExactPlan plan_exact(const Scene& scene, PackedOutline outline, glm::ivec2 canvas, bool software);
 
-// How many points of a tile the level of this number adds at most: level 0 is the tile's corners, each further level
-// halves the cells, the last are pixels.
+// How many points of a tile the level of this number adds at most: level 0 is the corners of the largest cells,
+// each further level halves the cells, the last are pixels.
 std::size_t exact_level_points(int level);
 
 }  // namespace penumbra

@@ -146,7 +146,6 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale) {
                 if (whole.is_part(i) && !whole.is_first(i)) continue;
                 const Kind own = whole.is_part(i) ? Kind::disc : kind_of(piece);
                 if (own != kind || (material.emission != Colour(0)) != emits) continue;
-                const std::size_t first = out.entries.size();
                 const glm::vec4 ends(piece.is_full ? glm::vec2(0) : corners.at(piece.a),
                                      piece.is_full ? glm::vec2(0) : corners.at(piece.b));
                 const glm::dvec2 centre = frame.point(piece.center);
@@ -166,16 +165,14 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale) {
                         out.entries.push_back(vec(piece.u * scale, piece.v * scale));
                         break;
                 }
-                out.ids.resize(out.entries.size(), static_cast<std::uint32_t>(out.light.size()));
-                std::fill(out.ids.begin() + static_cast<std::ptrdiff_t>(first), out.ids.end(),
-                          static_cast<std::uint32_t>(out.light.size()));
-                out.light.push_back(glm::vec4(glm::vec3(material.emission / radiance_scale), 0.0f));
+                out.lights_of.resize(out.entries.size(), glm::vec4(glm::vec3(material.emission / radiance_scale),
+                                                                   static_cast<float>(out.pieces)));
+                ++out.pieces;
                 ++out.counts[static_cast<std::size_t>(kind)];
                 if (emits) ++out.lights[static_cast<std::size_t>(kind)];
             }
         }
     }
-    out.pieces = out.light.size();
     for (const int count : out.lights) out.emitting += static_cast<std::size_t>(count);
     return out;
 }

@@ -15,14 +15,13 @@ namespace penumbra {
 
 struct PackedOutline {
     std::vector<glm::vec4> entries;         // of the one list that holds all pieces
-    std::vector<std::uint32_t> ids;         // of its pieces, one for each texel of entries
+    std::vector<glm::vec4> lights_of;       // for each texel of entries: radiance of its piece, and which piece it is
     std::array<int, 4> counts{};            // by kind: straight pieces, discs, arcs, ellipses
     std::array<int, 4> lights{};            // how many of them emit; they come first of their kind
-    std::vector<glm::vec4> light;           // radiance of each piece, by id
     std::size_t pieces = 0;
     std::size_t emitting = 0;
     bool fits = true;                       // false: too many pieces
-    std::size_t bytes() const { return 16 * (entries.size() + light.size()) + 4 * ids.size(); }
+    std::size_t bytes() const { return 16 * (entries.size() + lights_of.size()); }
 };
 
 // Emission is divided by `radiance_scale`. Corners that two pieces share stay equal to the last bit.
