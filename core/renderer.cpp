@@ -18,6 +18,7 @@
 #include "core/passes/distance_pass.h"
 #include "core/passes/exact_pass.h"
 #include "core/passes/jump_flood_pass.h"
+#include "core/passes/rc_fix_pass.h"
 #include "core/passes/reference_pass.h"
 #include "core/passes/resolve_pass.h"
 #include "core/passes/scene_buffers.h"
@@ -140,6 +141,7 @@ struct Renderer::Impl {
           distance(options.shader_dir),
           jump_flood(options.shader_dir),
           cascade(options.shader_dir),
+          rc_fix(options.shader_dir),
           resolve(options.shader_dir),
           reference(options.shader_dir),
           exact(options.shader_dir),
@@ -178,6 +180,7 @@ struct Renderer::Impl {
     DistancePass distance;
     JumpFloodPass jump_flood;
     CascadePass cascade;
+    RcFixPass rc_fix;
     ResolvePass resolve;
     ReferencePass reference;
     ExactPass exact;
@@ -212,7 +215,9 @@ RenderResult Renderer::Impl::render(const Scene& scene) {
     for (std::size_t level = plan.cascades.size(); level-- > 0;) {
         gl::Texture2D merged;
         record.pass("cascade " + std::to_string(level), plan.cascades[level].texture, [&] {
-            return cascade.run(plan, level, scene.sky, buffers, field, radiance ? &radiance : nullptr, settings, merged);
+            const gl::Texture2D* upper = radiance ? &radiance : nullptr;
+            return plan.bilinear_fix ? rc_fix.run(plan, level, scene.sky, buffers, field, upper, settings, merged)
+                                     : cascade.run(plan, level, scene.sky, buffers, field, upper, settings, merged);
         });
         settings.give(std::move(radiance));
         radiance = std::move(merged);

@@ -10,8 +10,8 @@
 namespace penumbra::gl {
 namespace {
 
-// A texture unit that no pass reads from; GL 4.3 has 16 for each stage at least.
-constexpr GLenum kScratchUnit = 15;
+// A texture unit that no pass reads from: the last of the 96 that GL 4.3 has at least, passes use the first 16.
+constexpr GLenum kScratchUnit = 95;
 
 std::size_t texel_bytes(GLenum format) {
     switch (format) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/device_error.h"
 #include "core/plan/pack.h"
@@ -94,6 +95,17 @@ CascadeSettings cascade_settings(Quality quality) {
     return {};
 }
 
+CascadeSettings rc_fix_settings(Quality quality) {
+    // Points of its own measured front (docs/methods/rc_fix.md). Cascade 0 has a probe at each pixel's centre at any quality:
+    // coarser ones take part in the last, exact stretch to each pixel, which is what a cascade -1 would be for.
+    switch (quality) {
+        case Quality::draft: return {1.0, 2.4, 1, 4.0, 18};
+        case Quality::standard: return {1.0, 1.2, 1, 2.0, 18};
+        case Quality::high: return {1.0, 0.8, 1, 1.0, 4.5};
+    }
+    return {};
+}
+
 int reference_rays(Quality quality) {
     switch (quality) {
         case Quality::draft: return 64;
@@ -106,13 +118,18 @@ int reference_rays(Quality quality) {
 std::vector<CascadePlan> plan_cascades(glm::ivec2 canvas, double diagonal_px, const CascadeSettings& settings) {
     const double ratio = 1.0 + 3.0 * diagonal_px / settings.interval_px;
     // The tolerance keeps an exact power of four from growing a cascade by rounding.
-    const int count = std::max(1, static_cast<int>(std::ceil(std::log2(ratio) / 2.0 - 1e-12)));
+    int count = std::max(1, static_cast<int>(std::ceil(std::log2(ratio) / 2.0 - 1e-12)));
+    if (settings.far_gap_px > 0) {
+        const double directions = 2.0 * std::numbers::pi * diagonal_px / settings.far_gap_px;
+        const double base = 4.0 * settings.base_tiles * settings.base_tiles;
+        count = std::clamp(1 + static_cast<int>(std::ceil(std::log2(directions / base) / 2.0)), 1, count);
+    }
     std::vector<CascadePlan> cascades;
     int sky_first = 0;
     for (int level = 0; level < count; ++level) {
         CascadePlan c;
         c.level = level;
-        c.spacing = std::ldexp(settings.spacing_px, level);
+        c.spacing = level == 0 ? settings.spacing_px : std::ldexp(settings.spacing_px * settings.growth, level - 1);
         const auto along = [&](int pixels) { return std::max(1, static_cast<int>(std::ceil(pixels / c.spacing))); };
         c.probes = {along(canvas.x), along(canvas.y)};
         c.first_probe = 0.5 * (glm::dvec2(canvas) - glm::dvec2(c.probes - 1) * c.spacing);
@@ -123,6 +140,7 @@ std::vector<CascadePlan> plan_cascades(glm::ivec2 canvas, double diagonal_px, co
         c.end = c.start + std::ldexp(settings.interval_px, 2 * level);
         c.sky_first = sky_first;
         sky_first += c.directions();
+        if (level == count - 1) c.end = std::max(c.end, diagonal_px);
         cascades.push_back(c);
     }
     return cascades;
@@ -155,7 +173,8 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
     plan.grid = plan_grid(scene.canvas);
     const bool brute_force = scene.render.method == "reference";
     const bool exact = scene.render.method == "exact";
-    plan.method = brute_force ? "reference" : exact ? "exact" : "rc";
+    plan.bilinear_fix = scene.render.method == "rc_fix";
+    plan.method = brute_force ? "reference" : exact ? "exact" : plan.bilinear_fix ? "rc_fix" : "rc";
     plan.method_reason = scene.render.method == "auto" ? "the fastest method of this version" : "asked for";
 
     double peak = brightest(scene.sky);
@@ -189,7 +208,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
     else
         plan.jump_steps = jumps;
 
-    const CascadeSettings settings = cascade_settings(scene.render.quality);
+    const CascadeSettings settings = plan.bilinear_fix ? rc_fix_settings(scene.render.quality) : cascade_settings(scene.render.quality);
     if (brute_force)
         plan.reference = plan_reference(scene, limits);
     else if (exact)
@@ -197,7 +216,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
     else
         plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
     if (peak <= 0 && skip) {
-        const double rays = brute_force ? plan.reference.rays : 4.0 * double(plan.cascades.size());
+        const double rays = brute_force ? plan.reference.rays : (plan.bilinear_fix ? 16.0 : 4.0) * double(plan.cascades.size());
         leave_out(brute_force ? "rays" : "cascades", "nothing emits light", pixels * rays);
         plan.cascades.clear();
         plan.reference = {};

@@ -74,6 +74,7 @@ struct Plan {
     bool list_shapes = false;           // per tile of the grid: each pixel asks its tile's shapes only
     std::vector<int> jump_steps;        // of jump flooding, empty without bitmaps
     std::vector<CascadePlan> cascades;  // [0] is the nearest; empty when no light can arrive
+    bool bilinear_fix = false;          // the cascades are those of `rc_fix`
     ReferencePlan reference;
     ExactPlan exact;                    // of the method `exact`
     bool resolve = false;               // false: cascade 0 already is the mean radiance per pixel
@@ -84,13 +85,16 @@ struct Plan {
     std::vector<SkippedWork> skipped;
 };
 
-// How finely `rc` samples: a point on its time/error curve.
+// How finely `rc` or `rc_fix` samples: a point on its time/error curve.
 struct CascadeSettings {
     double spacing_px = 1;    // of cascade 0's probes
     double interval_px = 1;   // length of cascade 0's interval
     int base_tiles = 1;       // direction groups of cascade 0 along each axis: 4 * base_tiles^2 rays
+    double growth = 2;        // of the spacing, from cascade 0 to cascade 1; 2 for all others
+    double far_gap_px = 0;    // cascades end where neighbouring rays are this near at the diagonal's end; 0: as the intervals need
 };
 CascadeSettings cascade_settings(Quality quality);
+CascadeSettings rc_fix_settings(Quality quality);
 
 // Rays a pixel of the method `reference`.
 int reference_rays(Quality quality);

@@ -16,6 +16,7 @@
 #include "glsl/jump.h"
 #include "glsl/loop_probe.h"
 #include "glsl/reference.h"
+#include "glsl/rc_fix.h"
 #include "glsl/resolve.h"
 #include "tests/gpu/shared_context.h"
 
@@ -69,6 +70,14 @@ std::vector<Layout> layouts() {
           FIELD(CascadeParams, group_angle), FIELD(CascadeParams, is_last), FIELD(CascadeParams, sky_first),
           FIELD(CascadeParams, pad0)},
          glsl::kCascadeGroupX, glsl::kCascadeGroupY},
+        {"rc_fix.comp", sizeof(glsl::RcFixParams),
+         {FIELD(RcFixParams, origin), FIELD(RcFixParams, extent), FIELD(RcFixParams, probes), FIELD(RcFixParams, upper_probes),
+          FIELD(RcFixParams, border), FIELD(RcFixParams, tiles), FIELD(RcFixParams, upper_tiles), FIELD(RcFixParams, upper_texel),
+          FIELD(RcFixParams, first_probe), FIELD(RcFixParams, upper_first), FIELD(RcFixParams, domain),
+          FIELD(RcFixParams, offset_cos), FIELD(RcFixParams, offset_sin), FIELD(RcFixParams, sky), FIELD(RcFixParams, spacing),
+          FIELD(RcFixParams, upper_spacing), FIELD(RcFixParams, start), FIELD(RcFixParams, end), FIELD(RcFixParams, group_angle),
+          FIELD(RcFixParams, longest), FIELD(RcFixParams, pad0), FIELD(RcFixParams, sky_first)},
+         glsl::kRcFixGroupX, glsl::kRcFixGroupY},
         {"resolve.comp", sizeof(glsl::ResolveParams),
          {FIELD(ResolveParams, origin), FIELD(ResolveParams, extent), FIELD(ResolveParams, probes),
           FIELD(ResolveParams, tiles), FIELD(ResolveParams, texel), FIELD(ResolveParams, first_probe),

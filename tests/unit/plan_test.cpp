@@ -55,6 +55,26 @@ std::vector<CascadePlan> cascades_for(double diagonal, double interval) {
 
 // ---- cascades -----------------------------------------------------------------------------------
 
+TEST(PlanCascades, OfTheBilinearFixEndWhereRaysAreDenseEnough) {
+    for (const Quality quality : {Quality::draft, Quality::standard, Quality::high})
+        for (const double diagonal : {1.4, 10.0, 136.0, 362.0, 724.0, 1448.0, 5793.0, 11585.0}) {
+            const CascadeSettings settings = rc_fix_settings(quality);
+            const auto cascades = plan_cascades({64, 64}, diagonal, settings);
+            const auto gap = [&](const CascadePlan& c) { return 2 * std::numbers::pi * diagonal / c.directions(); };
+            CascadeSettings all = settings;
+            all.far_gap_px = 0;
+            if (cascades.size() < plan_cascades({64, 64}, diagonal, all).size()) EXPECT_LE(gap(cascades.back()), settings.far_gap_px);
+            if (cascades.size() > 1) EXPECT_GT(gap(cascades[cascades.size() - 2]), settings.far_gap_px);
+            EXPECT_GE(cascades.back().end, diagonal);
+            EXPECT_EQ(cascades[0].spacing, 1);
+            EXPECT_EQ(cascades[0].probes, glm::ivec2(64));
+            for (std::size_t c = 1; c < cascades.size(); ++c) {
+                EXPECT_DOUBLE_EQ(cascades[c].spacing, cascades[c - 1].spacing * (c == 1 ? settings.growth : 2));
+                EXPECT_NEAR(cascades[c].start, cascades[c - 1].end, 1e-9 * cascades[c].end);
+            }
+        }
+}
+
 TEST(PlanCascades, CountStandsOnBothSidesOfEveryPower) {
     for (const double interval : {0.5, 1.0, 1.2, 3.0})
         for (int n = 1; n <= 8; ++n) {

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "core/gl/program.h"
+#include "core/passes/frame.h"
+#include "core/passes/scene_buffers.h"
+#include "core/plan/plan.h"
+
+namespace penumbra {
+
+// A cascade with the forked bilinear fix (docs/methods/rc_fix.md). Reads distance, material and the cascade above (none for
+// the last), with the scene buffers bound. Writes one cascade: radiance rgb, and in a whether the probe is in free space.
+// One invocation per probe and direction group.
+class RcFixPass {
+public:
+    explicit RcFixPass(const std::string& shader_dir);
+    PassWork run(const Plan& plan, std::size_t level, const Sky& sky, const SceneBuffers& scene,
+                 const DistanceField& field, const gl::Texture2D* upper, const PassSettings& settings, gl::Texture2D& out);
+
+private:
+    gl::ComputeProgram joined_;  // to the probes of the cascade above
+    gl::ComputeProgram last_;    // to the sky
+};
+
+}  // namespace penumbra

@@ -1,0 +1,91 @@
+// A sector of directions as one widening beam: what is narrower than the beam takes its share of it, where a ray as
+// thin as a line would meet it or not.
+#include "lib/march.glsl"
+
+// The share of a beam of width w along d through p that a convex shape covers, seen along the beam: its shadow across the
+// beam is an interval. Negative for shapes that are not known to be convex.
+float covered_share(int shape, int type, vec2 p, vec2 d, float w) {
+    vec4 a = texelFetch(shape_records, shape * kShapeTexels + 2);
+    vec4 b = texelFetch(shape_records, shape * kShapeTexels + 3);
+    vec2 across = vec2(-d.y, d.x);
+    vec2 turned = rotate_into(across, b.xy);
+    vec2 middle = a.xy;
+    float reach = a.z;  // circle
+    if (type == kShapeEllipse) reach = length(turned * a.zw);
+    if (type == kShapeRect) reach = dot(abs(turned), a.zw - b.z) + b.z;
+    if (type == kShapeLine) {
+        middle = 0.5 * (a.xy + a.zw);
+        reach = 0.5 * abs(dot(a.zw - a.xy, across)) + b.z;
+    }
+    if (type == kShapePolyline || type == kShapePolygon || type == kShapeBitmap) return -1.0;
+    float c = dot(middle - p, across);
+    return clamp((min(c + reach, 0.5 * w) - max(c - reach, -0.5 * w)) / w, 0.0, 1.0);
+}
+
+// Radiance met by a beam from p along d that is `width` wide at p and grows by `slope`; `passes` is the share of it that
+// leaves the domain.
+void march_cone(vec2 p, vec2 d, float width, float slope, vec4 domain, ivec2 border, inout int budget, out vec3 radiance, out float passes) {
+    radiance = vec3(0.0);
+    passes = 1.0;
+    float stop = exit_distance(p, d, domain);
+    float t = 0.0;
+    ivec2 last_pixel = textureSize(distance_texture, 0) - 1;
+    int beside = -1;           // the shape that the beam is passing
+    float lowest = kFar;       // the axis' least distance to it so far
+    float share = 0.0;         // covered where it was least
+    bool approached = false;   // from here on: what is behind p is not met
+    while (passes > 0.001) {
+        ivec2 pixel = ivec2(0);
+        float room = 0.0;
+        float w = width;
+        vec2 at = p;
+        while (t < stop && budget > 0) {
+            --budget;
+            at = p + d * t;
+            w = width + slope * t;
+            pixel = clamp(ivec2(floor(at)) + border, ivec2(0), last_pixel);
+            room = texelFetch(distance_texture, pixel, 0).r;
+            if (room < kNear + 0.5 * w) break;
+            t += room - kHalfDiagonal - 0.5 * w;
+        }
+        if (budget <= 0) passes = 0.0;  // blocked, never free
+        bool over = t >= stop;
+        int shape = over ? -1 : texelFetch(material_texture, pixel, 0).r;
+        vec4 head = texelFetch(shape_records, max(shape, 0) * kShapeTexels);
+        int type = int(head.x);
+        float exact = room;
+        if (shape >= 0 && head.w > float(kMostMarchedEdges)) {
+            exact = interpolated_distance(at, border, last_pixel) - head.y;
+        } else if (shape >= 0 && type != kShapeBitmap) {
+            exact = shape_distance(shape, at, kFar);
+            budget -= type == kShapeEllipse ? kEllipseIterations : int(head.w);
+        }
+        bool near = !over && shape >= 0 && exact < 0.5 * w;
+        if (beside >= 0 && (!near || shape != beside)) {
+            // Past it: its share counts once, where the axis was nearest.
+            if (approached) {
+                radiance += passes * share * shape_emission(beside, at);
+                passes *= 1.0 - share;
+            }
+            beside = -1;
+        }
+        if (over) break;
+        if (near) {
+            float now = covered_share(shape, type, at, d, w);
+            bool met = now < 0.0 ? exact <= head.y : now > 0.999 && exact <= 0.0;
+            if (met) {
+                vec3 light = shape_emission(shape, vec2(pixel - border) + 0.5);
+                if (now < 0.0 && type != kShapeBitmap) light *= texelFetch(shape_records, shape * kShapeTexels + 1).w;
+                radiance += passes * light;
+                passes = 0.0;
+            } else if (now >= 0.0 && (beside < 0 || exact < lowest - 1e-4)) {
+                approached = t > 0.0;
+                beside = shape;
+                lowest = exact;
+                share = now;
+            }
+        }
+        // No shape is nearer than the distance at the pixel's centre allows; the one asked is known better.
+        t += max(clamp(abs(exact), kShortestStep, kHalfDiagonal), room - kHalfDiagonal);
+    }
+}
