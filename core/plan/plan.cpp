@@ -155,7 +155,8 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
     plan.grid = plan_grid(scene.canvas);
     const bool brute_force = scene.render.method == "reference";
     const bool exact = scene.render.method == "exact";
-    plan.method = brute_force ? "reference" : exact ? "exact" : "rc";
+    const bool holographic = scene.render.method == "hrc";
+    plan.method = scene.render.method == "auto" ? "rc" : scene.render.method;
     plan.method_reason = scene.render.method == "auto" ? "the fastest method of this version" : "asked for";
 
     double peak = brightest(scene.sky);
@@ -194,6 +195,8 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
         plan.reference = plan_reference(scene, limits);
     else if (exact)
         plan.exact = plan_exact(scene, pack_outline(scene, 1.0), plan.canvas, limits.software);
+    else if (holographic)
+        plan.hrc = plan_hrc(plan.canvas, scene.canvas.margin / scene.canvas.pixel_size(), hrc_settings(scene.render.quality));
     else
         plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
     if (peak <= 0 && skip) {
@@ -202,6 +205,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
         plan.cascades.clear();
         plan.reference = {};
         plan.exact = {};
+        plan.hrc = {};
     }
     const bool resolved = settings.spacing_px == 1.0 && settings.base_tiles == 1;
     plan.resolve = !plan.cascades.empty() && !(resolved && skip);
