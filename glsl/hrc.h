@@ -11,6 +11,10 @@ const int kHrcGroupX = 64;  // Mesa 22 vectorises along x only
 const int kHrcGroupY = 1;
 const int kHrcParamsBinding = 0;
 const int kHrcImageBinding = 0;
+const int kHrcListBinding = 1;   // r32ui: row and slot of rays to be traced, in lines of kHrcListWidth
+const int kHrcCountBinding = 2;  // r32ui: how many
+const int kHrcListWidth = 4096;  // a power of two
+const int kHrcListUnit = 7;
 const int kHrcPiecesUnit = 6;   // rgba: radiance met, transmittance
 const int kHrcFluenceUnit = 7;  // rgb: the next level's fluence per cone
 const int kHrcSumUnit = 6;      // rgb: fluence of all quadrants, a: 1 in free space
@@ -29,7 +33,7 @@ struct HrcParams {
     int rays;           // of the pieces written
     int lower_planes;   // of the pieces read
     int lower_rays;
-    int compose;        // tracing: 1 where the even rays are put together from the level below, 0 at level 0
+    int compose;        // 1 where the even rays are put together from the level below, 0 at level 0
     int first_plane;    // merging: 0 the even planes, 1 the odd ones
     int cones;          // of the fluences written
     int upper_planes;   // of the fluences read, 0: nothing but the sky
@@ -46,7 +50,7 @@ struct HrcParams {
     int row_border;     // rows before the view's first
     int is_first;       // quadrant to be added up
     int aligned;        // 1: a lattice point at each pixel's centre
-    int pad2;
+    int listed;         // rays on the list
     vec2 first;         // lattice point (0, 0), px of the view
     vec2 along;         // px a column
     vec2 across;        // px a row

@@ -1,9 +1,7 @@
-// Reads level 0's fluences of a quadrant, and distance and material; adds them up for each lattice point of the view. In a: 1 where the
-// point is in free space. One thread is a lattice point; x runs along the quadrant's rows.
+// Reads level 0's fluences of a quadrant; adds them up for each lattice point of the view. One thread is a lattice point;
+// x runs along the quadrant's rows.
 #version 430 core
-#include "cascade.h"
 #include "hrc.h"
-#include "lib/march.glsl"
 
 layout(local_size_x = kHrcGroupX, local_size_y = kHrcGroupY) in;
 layout(std140, binding = kHrcParamsBinding) uniform Params { HrcParams params; };
@@ -14,11 +12,7 @@ void main() {
     ivec2 id = params.origin + ivec2(gl_GlobalInvocationID.xy);
     if (id.x >= params.extent.x || id.y >= params.extent.y) return;
     ivec2 point = params.corner + id.x * params.row_step + id.y * params.column_step;
-    vec4 sum;
-    if (params.is_first != 0)
-        sum = vec4(0.0, 0.0, 0.0, starts_inside(params.first_point + vec2(point) * params.cell, params.border) ? 0.0 : 1.0);
-    else
-        sum = imageLoad(sum_image, point);
+    vec4 sum = params.is_first != 0 ? vec4(0.0, 0.0, 0.0, 1.0) : imageLoad(sum_image, point);
     for (int cone = 0; cone < params.cones; ++cone)
         sum.rgb += texelFetch(fluence_texture, ivec2(id.x + params.row_border, id.y * params.cones + cone), 0).rgb;
     imageStore(sum_image, point, sum);

@@ -28,6 +28,12 @@ GLenum format(const Plan& plan) { return plan.half_floats ? GL_RGBA16F : GL_RGBA
 
 const HrcLevel& level_of(const HrcQuadrant& q, int n) { return q.levels[static_cast<std::size_t>(n)]; }
 
+// Room for every ray of the level that traces most of them: level 0.
+glm::ivec2 hrc_list_size(const HrcQuadrant& q) {
+    const std::size_t rays = level_of(q, 0).pieces(q.rows);
+    return {glsl::kHrcListWidth, static_cast<int>((rays + glsl::kHrcListWidth - 1) / glsl::kHrcListWidth)};
+}
+
 void set_jobs(glsl::HrcParams& params, int jobs) {
     params.jobs = jobs;
     params.per_job = 1.0f / static_cast<float>(jobs);
@@ -36,7 +42,8 @@ void set_jobs(glsl::HrcParams& params, int jobs) {
 }  // namespace
 
 HrcPass::HrcPass(const std::string& shader_dir)
-    : trace_("hrc_trace.comp", sizeof(glsl::HrcParams), shader_dir),
+    : low_("hrc_low.comp", sizeof(glsl::HrcParams), shader_dir),
+      trace_("hrc_trace.comp", sizeof(glsl::HrcParams), shader_dir),
       extend_("hrc_extend.comp", sizeof(glsl::HrcParams), shader_dir),
       merge_("hrc_merge.comp", sizeof(glsl::HrcParams), shader_dir),
       gather_("hrc_gather.comp", sizeof(glsl::HrcParams), shader_dir),
@@ -46,8 +53,17 @@ PassWork HrcPass::pieces(const Plan& plan, const HrcQuadrant& q, const DistanceF
                          std::vector<gl::Texture2D>& pieces) {
     const int n = static_cast<int>(pieces.size());
     const HrcLevel& level = level_of(q, n);
+    const bool low = n < plan.hrc.settings.traced_levels;
     // Taken before anything is bound: making a texture binds it.
     gl::Texture2D out = settings.take(format(plan), {q.rows, level.planes * level.rays});
+    gl::Texture2D list;
+    gl::Texture2D count;
+    if (low) {
+        list = settings.take(GL_R32UI, hrc_list_size(q));
+        count = settings.take(GL_R32UI, {1, 1});
+        const GLuint none = 0;
+        count.fill(GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
+    }
     glsl::HrcParams params = common(plan, q);
     params.stride = 1 << n;
     params.rays = level.rays;
@@ -61,18 +77,30 @@ PassWork HrcPass::pieces(const Plan& plan, const HrcQuadrant& q, const DistanceF
         pieces.back().bind_texture(glsl::kHrcPiecesUnit);
     }
     out.bind_image(glsl::kHrcImageBinding, GL_WRITE_ONLY);
-    const glm::ivec2 extent{q.rows, level.planes * params.jobs};
-    params.extent = extent;
+    params.extent = {q.rows, level.planes * params.jobs};
     PassWork work;
     work.bytes = out.bytes();
-    if (n < plan.hrc.settings.traced_levels) {
-        field.distance.bind_texture(glsl::kCascadeDistanceUnit);
-        field.material.bind_texture(glsl::kCascadeMaterialUnit);
-        work.dispatches = trace_.dispatch(params, extent, settings.rays);
+    if (low) {
+        if (n == 0) out.bind_texture(glsl::kHrcPiecesUnit);  // not read
+        field.distance.bind_texture(glsl::kHrcDistanceUnit);
+        list.bind_image(glsl::kHrcListBinding, GL_WRITE_ONLY);
+        count.bind_image(glsl::kHrcCountBinding, GL_READ_WRITE);
+        work.dispatches = low_.dispatch(params, params.extent, settings.pixels);
         work.rays = static_cast<std::size_t>(q.rows) * static_cast<std::size_t>(level.planes) *
                     static_cast<std::size_t>(n > 0 ? level.rays - params.jobs : level.rays);
+        GLuint listed = 0;
+        count.read(GL_RED_INTEGER, GL_UNSIGNED_INT, &listed);
+        params.listed = static_cast<int>(listed);
+        set_jobs(params, level.rays);
+        params.extent = {glsl::kHrcListWidth, (params.listed + glsl::kHrcListWidth - 1) / glsl::kHrcListWidth};
+        field.distance.bind_texture(glsl::kCascadeDistanceUnit);
+        field.material.bind_texture(glsl::kCascadeMaterialUnit);
+        list.bind_texture(glsl::kHrcListUnit);
+        if (params.listed > 0) work.dispatches += trace_.dispatch(params, params.extent, settings.rays);
+        settings.give(std::move(list));
+        settings.give(std::move(count));
     } else {
-        work.dispatches = extend_.dispatch(params, extent, settings.pixels);
+        work.dispatches = extend_.dispatch(params, params.extent, settings.pixels);
     }
     pieces.push_back(std::move(out));
     return work;

@@ -31,6 +31,7 @@ public:
                     gl::Texture2D& out);
 
 private:
+    gl::ComputeProgram low_;
     gl::ComputeProgram trace_;
     gl::ComputeProgram extend_;
     gl::ComputeProgram merge_;
