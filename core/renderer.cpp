@@ -195,6 +195,8 @@ struct Renderer::Impl {
 gl::Texture2D Renderer::Impl::render_hrc(const Plan& plan, const DistanceField& field, Recorder& record) {
     constexpr const char* kNames[] = {"right", "down", "left", "up"};
     gl::Texture2D sum;
+    if (!plan.hrc.aligned())
+        record.pass("hrc clear", plan.hrc.points, [&] { return hrc.clear(plan, field, settings, sum); });
     for (std::size_t i = 0; i < plan.hrc.quadrants.size(); ++i) {
         const HrcQuadrant& q = plan.hrc.quadrants[i];
         const std::string side = std::string("hrc ") + kNames[i];
@@ -214,7 +216,7 @@ gl::Texture2D Renderer::Impl::render_hrc(const Plan& plan, const DistanceField& 
             settings.give(std::move(fluence));
             fluence = std::move(merged);
         }
-        record.pass(side + " gather", plan.hrc.points, [&] { return hrc.gather(plan, q, field, fluence, settings, sum); });
+        record.pass(side + " gather", plan.hrc.points, [&] { return hrc.gather(plan, q, fluence, settings, sum); });
         settings.give(std::move(fluence));
         for (gl::Texture2D& texture : pieces) settings.give(std::move(texture));
     }

@@ -17,7 +17,7 @@ const int kHrcListWidth = 4096;  // a power of two
 const int kHrcListUnit = 7;
 const int kHrcPiecesUnit = 6;   // rgba: radiance met, transmittance
 const int kHrcFluenceUnit = 7;  // rgb: the next level's fluence per cone
-const int kHrcSumUnit = 6;      // rgb: fluence of all quadrants, a: 1 in free space
+const int kHrcSumUnit = 6;      // rgb: fluence of all quadrants
 const int kHrcDistanceUnit = 4;  // r32f
 
 // The programs of holographic radiance cascades share these (docs/methods/hrc.md). All counts are of one quadrant.
@@ -49,8 +49,8 @@ struct HrcParams {
     ivec2 column_step;  // to the next column's
     int row_border;     // rows before the view's first
     int is_first;       // quadrant to be added up
-    int aligned;        // 1: a lattice point at each pixel's centre
     int listed;         // rays on the list
+    int pad0;
     vec2 first;         // lattice point (0, 0), px of the view
     vec2 along;         // px a column
     vec2 across;        // px a row
@@ -58,8 +58,8 @@ struct HrcParams {
     vec4 domain;        // x0 y0 x1 y1, px of the view
     float cell;         // px
     float blur;         // weight of each of four neighbours beside the pixel's own of 1
-    int pad0;
     int pad1;
+    int pad2;
 };
 
 #ifdef __cplusplus

@@ -41,8 +41,9 @@ void main() {
     vec2 d = params.along * float(params.stride) + params.across * float(params.climb * ray - params.stride);
     float reach = 0.25 * length(d) + kHalfDiagonal;
     bool open = room_at(p + 0.25 * d) >= reach && room_at(p + 0.75 * d) >= reach;
-    // What begins inside a shape is never asked for: whatever leads there is blocked.
-    bool buried = room_at(p) < -kHalfDiagonal;
+    // What begins inside a shape is never asked for: whatever leads there is blocked. Not so within a march's last step of
+    // the outline.
+    bool buried = room_at(p) < -kHalfDiagonal - 0.05;
     if (open || buried) {
         imageStore(pieces_image, ivec2(row, slot), vec4(0.0, 0.0, 0.0, buried ? 0.0 : 1.0));
     } else {

@@ -46,8 +46,10 @@ HrcPass::HrcPass(const std::string& shader_dir)
       trace_("hrc_trace.comp", sizeof(glsl::HrcParams), shader_dir),
       extend_("hrc_extend.comp", sizeof(glsl::HrcParams), shader_dir),
       merge_("hrc_merge.comp", sizeof(glsl::HrcParams), shader_dir),
+      clear_("hrc_clear.comp", sizeof(glsl::HrcParams), shader_dir),
       gather_("hrc_gather.comp", sizeof(glsl::HrcParams), shader_dir),
-      finish_("hrc_finish.comp", sizeof(glsl::HrcParams), shader_dir) {}
+      blur_("hrc_blur.comp", sizeof(glsl::HrcParams), shader_dir),
+      spread_("hrc_spread.comp", sizeof(glsl::HrcParams), shader_dir) {}
 
 PassWork HrcPass::pieces(const Plan& plan, const HrcQuadrant& q, const DistanceField& field, const PassSettings& settings,
                          std::vector<gl::Texture2D>& pieces) {
@@ -138,8 +140,21 @@ PassWork HrcPass::merge(const Plan& plan, const HrcQuadrant& q, int n, const std
     return work;
 }
 
-PassWork HrcPass::gather(const Plan& plan, const HrcQuadrant& q, const DistanceField& field, const gl::Texture2D& fluence,
-                         const PassSettings& settings, gl::Texture2D& sum) {
+PassWork HrcPass::clear(const Plan& plan, const DistanceField& field, const PassSettings& settings, gl::Texture2D& sum) {
+    sum = settings.take(GL_RGBA32F, plan.hrc.points);
+    glsl::HrcParams params = common(plan, plan.hrc.quadrants.front());
+    params.extent = plan.hrc.points;
+    field.distance.bind_texture(glsl::kCascadeDistanceUnit);
+    field.material.bind_texture(glsl::kCascadeMaterialUnit);
+    sum.bind_image(glsl::kHrcImageBinding, GL_WRITE_ONLY);
+    PassWork work;
+    work.bytes = sum.bytes();
+    work.dispatches = clear_.dispatch(params, params.extent, settings.pixels);
+    return work;
+}
+
+PassWork HrcPass::gather(const Plan& plan, const HrcQuadrant& q, const gl::Texture2D& fluence, const PassSettings& settings,
+                         gl::Texture2D& sum) {
     glsl::HrcParams params = common(plan, q);
     params.cones = level_of(q, 0).cones;
     params.is_first = sum ? 0 : 1;
@@ -151,8 +166,6 @@ PassWork HrcPass::gather(const Plan& plan, const HrcQuadrant& q, const DistanceF
     if (backward) params.corner = (plan.hrc.points - 1) * (glm::ivec2(1) - params.row_step);
     params.extent = horizontal ? glm::ivec2(plan.hrc.points.y, plan.hrc.points.x) : plan.hrc.points;
     fluence.bind_texture(glsl::kHrcFluenceUnit);
-    field.distance.bind_texture(glsl::kCascadeDistanceUnit);
-    field.material.bind_texture(glsl::kCascadeMaterialUnit);
     sum.bind_image(glsl::kHrcImageBinding, GL_READ_WRITE);
     PassWork work;
     work.bytes = sum.bytes();
@@ -163,8 +176,7 @@ PassWork HrcPass::gather(const Plan& plan, const HrcQuadrant& q, const DistanceF
 PassWork HrcPass::finish(const Plan& plan, const DistanceField& field, const gl::Texture2D& sum, const PassSettings& settings,
                          gl::Texture2D& out) {
     glsl::HrcParams params = common(plan, plan.hrc.quadrants.front());
-    params.aligned = plan.hrc.settings.cell_px == 1.0 ? 1 : 0;
-    params.blur = 0.25f;
+    params.blur = static_cast<float>(plan.hrc.settings.blur);
     params.extent = plan.canvas;
     out = settings.take(format(plan), plan.canvas);
     field.distance.bind_texture(glsl::kHrcDistanceUnit);
@@ -172,7 +184,8 @@ PassWork HrcPass::finish(const Plan& plan, const DistanceField& field, const gl:
     out.bind_image(glsl::kHrcImageBinding, GL_WRITE_ONLY);
     PassWork work;
     work.bytes = out.bytes();
-    work.dispatches = finish_.dispatch(params, plan.canvas, settings.pixels);
+    gl::ComputeProgram& program = plan.hrc.aligned() ? blur_ : spread_;
+    work.dispatches = program.dispatch(params, plan.canvas, settings.pixels);
     return work;
 }
 

@@ -23,9 +23,11 @@ public:
     // The fluences of level n from those of level n + 1 (none at the top). One invocation per point and cone.
     PassWork merge(const Plan& plan, const HrcQuadrant& quadrant, int level, const std::vector<gl::Texture2D>& pieces,
                    const gl::Texture2D* upper, const PassSettings& settings, gl::Texture2D& out);
+    // An empty sum, which knows what lattice points are in free space; one invocation per lattice point in the view.
+    PassWork clear(const Plan& plan, const DistanceField& field, const PassSettings& settings, gl::Texture2D& sum);
     // Adds level 0's fluences to those of the quadrants before; one invocation per lattice point in the view.
-    PassWork gather(const Plan& plan, const HrcQuadrant& quadrant, const DistanceField& field, const gl::Texture2D& fluence,
-                    const PassSettings& settings, gl::Texture2D& sum);
+    PassWork gather(const Plan& plan, const HrcQuadrant& quadrant, const gl::Texture2D& fluence, const PassSettings& settings,
+                    gl::Texture2D& sum);
     // Writes the mean radiance of each pixel, one invocation per pixel.
     PassWork finish(const Plan& plan, const DistanceField& field, const gl::Texture2D& sum, const PassSettings& settings,
                     gl::Texture2D& out);
@@ -35,8 +37,10 @@ private:
     gl::ComputeProgram trace_;
     gl::ComputeProgram extend_;
     gl::ComputeProgram merge_;
+    gl::ComputeProgram clear_;
     gl::ComputeProgram gather_;
-    gl::ComputeProgram finish_;
+    gl::ComputeProgram blur_;
+    gl::ComputeProgram spread_;
 };
 
 }  // namespace penumbra

@@ -42,9 +42,9 @@ double degrees(glm::dvec2 d) { return std::atan2(d.y, d.x) * 180.0 / std::number
 
 HrcSettings hrc_settings(Quality quality) {
     switch (quality) {
-        case Quality::draft: return {2.0, 2, 3};
-        case Quality::standard: return {1.0, 2, 4};
-        case Quality::high: return {1.0, 1, 4};
+        case Quality::draft: return {2.0, 1, 3, 0};
+        case Quality::standard: return {1.0, 1, 4, 0.25};
+        case Quality::high: return {0.5, 1, 5, 0};
     }
     return {};
 }
@@ -80,6 +80,21 @@ HrcPlan plan_hrc(glm::ivec2 canvas, double margin_px, const HrcSettings& setting
         plan.quadrants.push_back(q);
     }
     return plan;
+}
+
+std::size_t hrc_bytes(const HrcPlan& plan, std::size_t texel) {
+    std::size_t most = 0;
+    for (const HrcQuadrant& q : plan.quadrants) {
+        std::size_t pieces = 0;
+        std::size_t fluences = 0;
+        const auto rows = static_cast<std::size_t>(q.rows);
+        for (const HrcLevel& level : q.levels) {
+            pieces += level.pieces(q.rows);
+            fluences = std::max(fluences, rows * static_cast<std::size_t>(level.planes) * static_cast<std::size_t>(level.cones));
+        }
+        most = std::max(most, texel * (pieces + 2 * fluences) + 4 * q.levels.front().pieces(q.rows));
+    }
+    return most + 16 * static_cast<std::size_t>(plan.points.x) * static_cast<std::size_t>(plan.points.y);
 }
 
 std::vector<glm::vec4> hrc_cones(const HrcPlan& plan, const Sky& sky, double radiance_scale) {

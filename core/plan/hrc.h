@@ -19,6 +19,7 @@ struct HrcSettings {
     double cell_px = 1;     // between lattice points, along both axes
     int climb = 2;          // cells between neighbouring rays where they end: 2 is the paper's lattice, 1 a denser one
     int traced_levels = 4;  // ray pieces of levels 0 to this - 1 are traced, longer ones put together
+    double blur = 0.25;     // weight of each of four neighbours beside the pixel's own of 1, where lattice points are pixels
 };
 HrcSettings hrc_settings(Quality quality);
 
@@ -48,14 +49,17 @@ struct HrcPlan {
     glm::ivec2 points{0};       // lattice points in the view
     glm::dvec2 first_point{0};  // px; the lattice is centred on the view
     std::vector<HrcQuadrant> quadrants;  // right, down, left, up; empty: not this method
-    std::size_t bytes = 0;               // of the textures of the largest quadrant and what is kept beside them
     bool active() const { return !quadrants.empty(); }
+    bool aligned() const { return settings.cell_px == 1.0; }  // each pixel's centre is a lattice point
 };
 
 HrcPlan plan_hrc(glm::ivec2 canvas, double margin_px, const HrcSettings& settings);
 
 // Angle between rays i and i + 1 of level n, radians. Over a level they add up to a quarter turn.
 double hrc_cone_angle(int level, int climb, int cone);
+
+// What the textures of the largest quadrant and of the sum take, `texel` bytes a ray piece and a fluence.
+std::size_t hrc_bytes(const HrcPlan& plan, std::size_t texel);
 
 // For each level of each quadrant and each of its cones: the sky's radiance integrated over the cone, and its angle.
 std::vector<glm::vec4> hrc_cones(const HrcPlan& plan, const Sky& sky, double radiance_scale);
