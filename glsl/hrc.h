@@ -15,8 +15,9 @@ const int kHrcListBinding = 1;   // r32ui: row and slot of rays to be traced, in
 const int kHrcCountBinding = 2;  // r32ui: how many
 const int kHrcListWidth = 4096;  // a power of two
 const int kHrcListUnit = 7;
-const int kHrcPiecesUnit = 6;   // rgba: radiance met, transmittance
-const int kHrcFluenceUnit = 7;  // rgb: the next level's fluence per cone
+const int kHrcPiecesBinding = 3;  // rgba: radiance met, transmittance
+const int kHrcUpperBinding = 4;   // rgb: the next level's fluence per cone
+const int kHrcFluenceUnit = 7;    // rgb: level 0's
 const int kHrcSumUnit = 6;      // rgb: fluence of all quadrants
 const int kHrcDistanceUnit = 4;  // r32f
 

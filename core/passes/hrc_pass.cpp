@@ -41,11 +41,14 @@ void set_jobs(glsl::HrcParams& params, int jobs) {
 
 }  // namespace
 
+HrcPass::ByFormat::ByFormat(const std::string& name, const std::string& shader_dir)
+    : full(name + ".comp", sizeof(glsl::HrcParams), shader_dir), half(name + "_half.comp", sizeof(glsl::HrcParams), shader_dir) {}
+
 HrcPass::HrcPass(const std::string& shader_dir)
-    : low_("hrc_low.comp", sizeof(glsl::HrcParams), shader_dir),
+    : low_("hrc_low", shader_dir),
       trace_("hrc_trace.comp", sizeof(glsl::HrcParams), shader_dir),
-      extend_("hrc_extend.comp", sizeof(glsl::HrcParams), shader_dir),
-      merge_("hrc_merge.comp", sizeof(glsl::HrcParams), shader_dir),
+      extend_("hrc_extend", shader_dir),
+      merge_("hrc_merge", shader_dir),
       clear_("hrc_clear.comp", sizeof(glsl::HrcParams), shader_dir),
       gather_("hrc_gather.comp", sizeof(glsl::HrcParams), shader_dir),
       blur_("hrc_blur.comp", sizeof(glsl::HrcParams), shader_dir),
@@ -76,18 +79,18 @@ PassWork HrcPass::pieces(const Plan& plan, const HrcQuadrant& q, const DistanceF
         params.lower_rays = below.rays;
         params.compose = 1;
         set_jobs(params, below.rays);
-        pieces.back().bind_texture(glsl::kHrcPiecesUnit);
+        pieces.back().bind_image(glsl::kHrcPiecesBinding, GL_READ_ONLY);
     }
     out.bind_image(glsl::kHrcImageBinding, GL_WRITE_ONLY);
     params.extent = {q.rows, level.planes * params.jobs};
     PassWork work;
     work.bytes = out.bytes();
     if (low) {
-        if (n == 0) out.bind_texture(glsl::kHrcPiecesUnit);  // not read
+        if (n == 0) out.bind_image(glsl::kHrcPiecesBinding, GL_READ_ONLY);  // not read
         field.distance.bind_texture(glsl::kHrcDistanceUnit);
         list.bind_image(glsl::kHrcListBinding, GL_WRITE_ONLY);
         count.bind_image(glsl::kHrcCountBinding, GL_READ_WRITE);
-        work.dispatches = low_.dispatch(params, params.extent, settings.pixels);
+        work.dispatches = low_.of(plan).dispatch(params, params.extent, settings.pixels);
         work.rays = static_cast<std::size_t>(q.rows) * static_cast<std::size_t>(level.planes) *
                     static_cast<std::size_t>(n > 0 ? level.rays - params.jobs : level.rays);
         GLuint listed = 0;
@@ -102,7 +105,7 @@ PassWork HrcPass::pieces(const Plan& plan, const HrcQuadrant& q, const DistanceF
         settings.give(std::move(list));
         settings.give(std::move(count));
     } else {
-        work.dispatches = extend_.dispatch(params, params.extent, settings.pixels);
+        work.dispatches = extend_.of(plan).dispatch(params, params.extent, settings.pixels);
     }
     pieces.push_back(std::move(out));
     return work;
@@ -120,7 +123,7 @@ PassWork HrcPass::merge(const Plan& plan, const HrcQuadrant& q, int n, const std
     params.upper_planes = upper != nullptr ? above.planes : 0;
     params.upper_cones = above.cones;
     params.upper_first = above.first_cone;
-    (upper != nullptr ? *upper : pieces.back()).bind_texture(glsl::kHrcFluenceUnit);  // no unit is left without
+    (upper != nullptr ? *upper : pieces.back()).bind_image(glsl::kHrcUpperBinding, GL_READ_ONLY);  // bound even where not read
     out.bind_image(glsl::kHrcImageBinding, GL_WRITE_ONLY);
     PassWork work;
     work.bytes = out.bytes();
@@ -133,9 +136,9 @@ PassWork HrcPass::merge(const Plan& plan, const HrcQuadrant& q, int n, const std
         params.ray_step = 2 - parity;
         params.lower_rays = parity == 0 ? above.rays : level.rays;
         params.own_terms = parity == 0 && upper != nullptr ? 2 : 0;
-        pieces[static_cast<std::size_t>(n + 1 - parity)].bind_texture(glsl::kHrcPiecesUnit);
+        pieces[static_cast<std::size_t>(n + 1 - parity)].bind_image(glsl::kHrcPiecesBinding, GL_READ_ONLY);
         params.extent = {q.rows, planes * level.cones};
-        work.dispatches += merge_.dispatch(params, params.extent, settings.pixels);
+        work.dispatches += merge_.of(plan).dispatch(params, params.extent, settings.pixels);
     }
     return work;
 }

@@ -33,10 +33,17 @@ public:
                     gl::Texture2D& out);
 
 private:
-    gl::ComputeProgram low_;
+    // Programs that read images have the images' format in them.
+    struct ByFormat {
+        ByFormat(const std::string& name, const std::string& shader_dir);
+        gl::ComputeProgram& of(const Plan& plan) { return plan.half_floats ? half : full; }
+        gl::ComputeProgram full, half;
+    };
+
+    ByFormat low_;
     gl::ComputeProgram trace_;
-    gl::ComputeProgram extend_;
-    gl::ComputeProgram merge_;
+    ByFormat extend_;
+    ByFormat merge_;
     gl::ComputeProgram clear_;
     gl::ComputeProgram gather_;
     gl::ComputeProgram blur_;

@@ -43,7 +43,7 @@ double degrees(glm::dvec2 d) { return std::atan2(d.y, d.x) * 180.0 / std::number
 HrcSettings hrc_settings(Quality quality) {
     switch (quality) {
         case Quality::draft: return {2.0, 1, 3, 0};
-        case Quality::standard: return {1.0, 1, 4, 0.25};
+        case Quality::standard: return {1.0, 1, 4, 0.125};
         case Quality::high: return {0.5, 1, 5, 0};
     }
     return {};
