@@ -70,7 +70,7 @@ std::vector<ShapeSlice> slice_shapes(const std::vector<Shape>& shapes) {
     return slices;
 }
 
-// What hrc may hold at once. All levels of a quadrant's ray pieces are kept until they are merged, so it needs ten to thirty
+// What hrc may hold at once. All levels of a quadrant's ray pieces are kept until they are merged, so it needs two to eleven
 // times what rc does; more than this would push others out of a server's memory.
 constexpr std::size_t kMostHrcBytes = std::size_t(3) << 30;
 constexpr std::size_t kMostHrcBytesOnGpu = std::size_t(16) << 30;
