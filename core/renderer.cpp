@@ -17,6 +17,7 @@
 #include "core/passes/compose_pass.h"
 #include "core/passes/distance_pass.h"
 #include "core/passes/exact_pass.h"
+#include "core/passes/hrc_pass.h"
 #include "core/passes/jump_flood_pass.h"
 #include "core/passes/rc_fix_pass.h"
 #include "core/passes/reference_pass.h"
@@ -143,6 +144,7 @@ struct Renderer::Impl {
           cascade(options.shader_dir),
           rc_fix(options.shader_dir),
           resolve(options.shader_dir),
+          hrc(options.shader_dir),
           reference(options.shader_dir),
           exact(options.shader_dir),
           compose(options.shader_dir) {
@@ -168,6 +170,7 @@ struct Renderer::Impl {
     }
 
     RenderResult render(const Scene& scene);
+    gl::Texture2D render_hrc(const Plan& plan, const DistanceField& field, Recorder& record);
     void check_thread() const {
         if (std::this_thread::get_id() != thread)
             throw DeviceError("The renderer was used on another thread than the one that made it.");
@@ -182,6 +185,7 @@ struct Renderer::Impl {
     CascadePass cascade;
     RcFixPass rc_fix;
     ResolvePass resolve;
+    HrcPass hrc;
     ReferencePass reference;
     ExactPass exact;
     ComposePass compose;
@@ -189,6 +193,42 @@ struct Renderer::Impl {
     DeviceLimits limits;
     PassSettings settings;
 };
+
+// ---- hrc: one quadrant after another; its ray pieces are kept from the shortest up, then merged from the longest down.
+gl::Texture2D Renderer::Impl::render_hrc(const Plan& plan, const DistanceField& field, Recorder& record) {
+    constexpr const char* kNames[] = {"right", "down", "left", "up"};
+    gl::Texture2D sum;
+    if (!plan.hrc.aligned())
+        record.pass("hrc clear", plan.hrc.points, [&] { return hrc.clear(plan, field, settings, sum); });
+    for (std::size_t i = 0; i < plan.hrc.quadrants.size(); ++i) {
+        const HrcQuadrant& q = plan.hrc.quadrants[i];
+        const std::string side = std::string("hrc ") + kNames[i];
+        std::vector<gl::Texture2D> pieces;
+        for (int n = 0; n <= q.top(); ++n) {
+            const HrcLevel& level = q.levels[static_cast<std::size_t>(n)];
+            record.pass(side + (n < plan.hrc.settings.traced_levels ? " trace" : " extend"), {q.rows, level.planes * level.rays},
+                        [&] { return hrc.pieces(plan, q, field, settings, pieces); });
+        }
+        gl::Texture2D fluence;
+        for (int n = q.top() - 1; n >= 0; --n) {
+            const HrcLevel& level = q.levels[static_cast<std::size_t>(n)];
+            gl::Texture2D merged;
+            record.pass(side + " merge", {q.rows, level.planes * level.cones}, [&] {
+                return hrc.merge(plan, q, n, pieces, fluence ? &fluence : nullptr, settings, merged);
+            });
+            settings.give(std::move(fluence));
+            fluence = std::move(merged);
+        }
+        record.pass(side + " gather", plan.hrc.points, [&] { return hrc.gather(plan, q, fluence, settings, sum); });
+        settings.give(std::move(fluence));
+        for (gl::Texture2D& texture : pieces) settings.give(std::move(texture));
+    }
+    gl::Texture2D radiance;
+    record.pass("hrc finish", plan.canvas, [&] { return hrc.finish(plan, field, sum, settings, radiance); });
+    settings.give(std::move(sum));
+    return radiance;
+}
+// ---- end of hrc
 
 // The frame, in the order in which it happens.
 RenderResult Renderer::Impl::render(const Scene& scene) {
@@ -228,6 +268,7 @@ RenderResult Renderer::Impl::render(const Scene& scene) {
     if (plan.exact.used)
         exact.run(plan, scene.sky, field, settings,
                   [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, radiance);
+    if (plan.hrc.active()) radiance = render_hrc(plan, field, record);
     if (plan.resolve)
         record.pass("resolve", plan.canvas, [&] {
             gl::Texture2D resolved;

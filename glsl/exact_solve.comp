@@ -355,6 +355,10 @@ void change(bvec4 changed, float sector_angle) {
         vec4 closeness = max(turn, 1.0 / max(pick(clearance, top_clearance, ends), vec4(1e-6)));
         third += pick(vec4(0.0), size * closeness * closeness * closeness, greaterThan(weight, vec4(0.0)));
         bvec4 counts = both(greaterThan(weight, vec4(0.0)), either(greaterThan(size, vec4(0.0)), not(fold)));
+        // Where the walk starts at a light, not at the sector's border, what hides the light there counts as well: else a beam
+        // between two that hide it would not show.
+        bvec4 begins = both(changed, both(equal(top, vec4(kUnknown)), greaterThan(now, vec4(-params.tan_half))));
+        counts = either(counts, begins);
         uvec4 pair = top_id * 0x9e3779b9u + id;
         signature += uvec4(counts.x ? mixed(pair.x) : 0u, counts.y ? mixed(pair.y) : 0u, counts.z ? mixed(pair.z) : 0u, counts.w ? mixed(pair.w) : 0u);
     }
@@ -484,6 +488,11 @@ void solve(int tile_index, int first, int count) {
                 now = next;
             }
             gather(bvec4(true), max(now, from), sector.z);
+            if (kSky == 0 && kSlopes != 0) {
+                bvec4 counts = both(lessThan(limit, vec4(params.tan_half)), notEqual(top, vec4(kUnknown)));
+                uvec4 pair = top_id * 0x85ebca6bu;
+                signature += uvec4(counts.x ? mixed(pair.x) : 0u, counts.y ? mixed(pair.y) : 0u, counts.z ? mixed(pair.z) : 0u, counts.w ? mixed(pair.w) : 0u);
+            }
         }
     }
 

@@ -9,6 +9,7 @@ namespace {
 
 // The farthest cascade's sectors from the exact integral; each nearer cascade averages four of the next.
 std::vector<glm::vec4> sky_table(const Sky& sky, const Plan& plan) {
+    if (plan.hrc.active()) return hrc_cones(plan.hrc, sky, plan.radiance_scale);
     if (sky.gradient.empty()) return {};
     if (plan.reference.rays > 0) {
         std::vector<glm::vec4> table;

@@ -18,7 +18,6 @@ struct ExactSettings {
     double tolerance = 0;       // of the interpolation, relative to the light there and a share of the mean
     int kink_cell = 1;          // px: cells larger than this are split where a shadow's edge may cross them
     bool strict_dark = false;   // pixels between light and dark are always solved
-    bool every_pixel = false;   // nothing is interpolated
 };
 ExactSettings exact_settings(Quality quality);
 

@@ -71,12 +71,31 @@ std::vector<ShapeSlice> slice_shapes(const std::vector<Shape>& shapes) {
     return slices;
 }
 
+// What hrc may hold at once. All levels of a quadrant's ray pieces are kept until they are merged, so it needs two to eleven
+// times what rc does; more than this would push others out of a server's memory.
+constexpr std::size_t kMostHrcBytes = std::size_t(3) << 30;
+constexpr std::size_t kMostHrcBytesOnGpu = std::size_t(16) << 30;
+
 std::size_t area(glm::ivec2 size) { return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y); }
 
 void check_size(glm::ivec2 size, std::size_t texel_bytes, const DeviceLimits& limits, const char* what) {
     if (std::max(size.x, size.y) <= limits.max_texture_side && area(size) * texel_bytes <= limits.max_texture_bytes) return;
     throw DeviceError("The picture is too large for this device: its " + std::string(what) + " needs a texture of " +
                       std::to_string(size.x) + " x " + std::to_string(size.y) + ".");
+}
+
+// hrc: half floats where full ones would take more than the cascades of rc may; refused where those are too many as well.
+void fit_hrc(Plan& plan, double peak, const DeviceLimits& limits) {
+    plan.half_floats = hrc_bytes(plan.hrc, 16) > kFullFloatBytes;
+    if (plan.half_floats) plan.radiance_scale = peak > 0 ? peak : 1.0;
+    const std::size_t texel = plan.half_floats ? 8 : 16;
+    for (const HrcQuadrant& q : plan.hrc.quadrants)
+        for (const HrcLevel& level : q.levels) check_size({q.rows, level.planes * level.rays}, texel, limits, "lattice");
+    const std::size_t bytes = hrc_bytes(plan.hrc, texel);
+    if (bytes > (limits.software ? kMostHrcBytes : kMostHrcBytesOnGpu))
+        throw DeviceError("The picture is too large for the method 'hrc' on this device: it needs " + std::to_string(bytes >> 20) +
+                          " MiB. A lower quality or the method 'rc' needs less.");
+    plan.gpu_bytes += bytes;
 }
 
 }  // namespace
@@ -174,7 +193,8 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
     const bool brute_force = scene.render.method == "reference";
     const bool exact = scene.render.method == "exact";
     plan.bilinear_fix = scene.render.method == "rc_fix";
-    plan.method = brute_force ? "reference" : exact ? "exact" : plan.bilinear_fix ? "rc_fix" : "rc";
+    const bool holographic = scene.render.method == "hrc";
+    plan.method = scene.render.method == "auto" ? "rc" : scene.render.method;
     plan.method_reason = scene.render.method == "auto" ? "the fastest method of this version" : "asked for";
 
     double peak = brightest(scene.sky);
@@ -213,14 +233,18 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
         plan.reference = plan_reference(scene, limits);
     else if (exact)
         plan.exact = plan_exact(scene, pack_outline(scene, 1.0), plan.canvas, limits.software);
+    else if (holographic)
+        plan.hrc = plan_hrc(plan.canvas, scene.canvas.margin / scene.canvas.pixel_size(), hrc_settings(scene.render.quality));
     else
         plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
     if (peak <= 0 && skip) {
-        const double rays = brute_force ? plan.reference.rays : (plan.bilinear_fix ? 16.0 : 4.0) * double(plan.cascades.size());
-        leave_out(brute_force ? "rays" : "cascades", "nothing emits light", pixels * rays);
+        const double levels = holographic ? double(plan.hrc.quadrants.front().levels.size()) : double(plan.cascades.size());
+        const double rays = brute_force ? plan.reference.rays : (plan.bilinear_fix ? 16.0 : 4.0) * levels;
+        leave_out(brute_force ? "rays" : holographic ? "ray pieces" : "cascades", "nothing emits light", pixels * rays);
         plan.cascades.clear();
         plan.reference = {};
         plan.exact = {};
+        plan.hrc = {};
     }
     const bool resolved = settings.spacing_px == 1.0 && settings.base_tiles == 1;
     plan.resolve = !plan.cascades.empty() && !(resolved && skip);
@@ -243,6 +267,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
     if (!plan.cascades.empty()) plan.gpu_bytes += 2 * largest_area * texel;
     if (plan.reference.rays > 0) plan.gpu_bytes += 16 * area(plan.canvas);
     if (plan.resolve) plan.gpu_bytes += area(plan.canvas) * texel;
+    if (plan.hrc.active()) fit_hrc(plan, peak, limits);
     return plan;
 }
 

@@ -11,6 +11,7 @@
 
 #include "core/plan/device_limits.h"
 #include "core/plan/exact_plan.h"
+#include "core/plan/hrc.h"
 #include "core/render_stats.h"
 #include "core/scene/scene.h"
 
@@ -77,6 +78,7 @@ struct Plan {
     bool bilinear_fix = false;          // the cascades are those of `rc_fix`
     ReferencePlan reference;
     ExactPlan exact;                    // of the method `exact`
+    HrcPlan hrc;                        // inactive unless this method runs
     bool resolve = false;               // false: cascade 0 already is the mean radiance per pixel
     bool half_floats = false;           // cascades in 16 bits, emission scaled to [0, 1]
     double radiance_scale = 1;          // emission is divided by this before it is packed

@@ -9,9 +9,7 @@ Problems unsupported(const Scene& scene) {
         problems.push_back({std::move(pointer), "not_supported_yet", what + " not supported yet"});
     };
     if (!scene.lights.empty()) refuse("/lights", "point, spot and directional lights are");
-    if (scene.render.method != "auto" && scene.render.method != "rc" && scene.render.method != "rc_fix" &&
-        scene.render.method != "exact" && scene.render.method != "reference")
-        refuse("/render/method", "the method '" + scene.render.method + "' is");
+    if (scene.render.method == "hybrid") refuse("/render/method", "the method 'hybrid' is");
     if (scene.render.bounces != 0) refuse("/render/bounces", "bounces are");
     if (scene.render.view != "final") refuse("/render/view", "the debug view '" + scene.render.view + "' is");
     if (scene.output.format != "png" && scene.output.format != "pfm")

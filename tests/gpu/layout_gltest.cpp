@@ -13,6 +13,7 @@
 #include "glsl/cascade.h"
 #include "glsl/compose.h"
 #include "glsl/distance.h"
+#include "glsl/hrc.h"
 #include "glsl/jump.h"
 #include "glsl/loop_probe.h"
 #include "glsl/reference.h"
@@ -38,6 +39,23 @@ struct Layout {
 Offsets jump_fields() {
     return {FIELD(JumpParams, origin), FIELD(JumpParams, extent), FIELD(JumpParams, step),
             FIELD(JumpParams, pad0),   FIELD(JumpParams, pad1),   FIELD(JumpParams, pad2)};
+}
+
+Offsets hrc_fields() {
+    return {FIELD(HrcParams, origin), FIELD(HrcParams, extent), FIELD(HrcParams, border),
+            FIELD(HrcParams, rows), FIELD(HrcParams, stride), FIELD(HrcParams, climb),
+            FIELD(HrcParams, jobs), FIELD(HrcParams, per_job), FIELD(HrcParams, rays),
+            FIELD(HrcParams, lower_planes), FIELD(HrcParams, lower_rays),
+            FIELD(HrcParams, compose), FIELD(HrcParams, first_plane), FIELD(HrcParams, cones),
+            FIELD(HrcParams, upper_planes), FIELD(HrcParams, upper_cones),
+            FIELD(HrcParams, upper_first), FIELD(HrcParams, piece_step),
+            FIELD(HrcParams, ray_step), FIELD(HrcParams, leap), FIELD(HrcParams, own_terms),
+            FIELD(HrcParams, points), FIELD(HrcParams, corner), FIELD(HrcParams, row_step),
+            FIELD(HrcParams, column_step), FIELD(HrcParams, row_border),
+            FIELD(HrcParams, is_first), FIELD(HrcParams, listed), FIELD(HrcParams, pad0),
+            FIELD(HrcParams, first), FIELD(HrcParams, along), FIELD(HrcParams, across),
+            FIELD(HrcParams, first_point), FIELD(HrcParams, domain), FIELD(HrcParams, cell),
+            FIELD(HrcParams, blur), FIELD(HrcParams, pad1), FIELD(HrcParams, pad2)};
 }
 
 Offsets compose_fields() {
@@ -90,6 +108,17 @@ std::vector<Layout> layouts() {
           FIELD(ReferenceParams, end_ray), FIELD(ReferenceParams, sky_first), FIELD(ReferenceParams, is_last),
           FIELD(ReferenceParams, domain), FIELD(ReferenceParams, sky)},
          glsl::kReferenceGroupX, glsl::kReferenceGroupY},
+        {"hrc_low.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
+        {"hrc_low_half.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
+        {"hrc_trace.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
+        {"hrc_extend.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
+        {"hrc_extend_half.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
+        {"hrc_merge.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
+        {"hrc_merge_half.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
+        {"hrc_clear.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
+        {"hrc_gather.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
+        {"hrc_blur.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
+        {"hrc_spread.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
         {"compose.comp", sizeof(glsl::ComposeParams), compose_fields(), glsl::kComposeGroupX, glsl::kComposeGroupY},
         {"linear.comp", sizeof(glsl::ComposeParams), compose_fields(), glsl::kComposeGroupX, glsl::kComposeGroupY},
         {"loop_probe.comp", sizeof(glsl::LoopProbeParams),

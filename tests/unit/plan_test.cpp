@@ -528,7 +528,7 @@ TEST(Unsupported, NamesEachKeyAndWhatItHolds) {
         EXPECT_NE(problems[0].message.find(named), std::string::npos) << problems[0].message;
     };
     expect_refused("/lights", "lights", [](Scene& s) { s.lights.push_back(PointLight{{1, 1}, Colour(1)}); });
-    expect_refused("/render/method", "'hrc'", [](Scene& s) { s.render.method = "hrc"; });
+    expect_refused("/render/method", "'hybrid'", [](Scene& s) { s.render.method = "hybrid"; });
     expect_refused("/render/bounces", "bounces", [](Scene& s) { s.render.bounces = 1; });
     expect_refused("/render/view", "'probes'", [](Scene& s) { s.render.view = "probes"; });
     expect_refused("/output/format", "'exr'", [](Scene& s) { s.output.format = "exr"; });
@@ -540,7 +540,7 @@ TEST(Unsupported, NamesEachKeyAndWhatItHolds) {
 TEST(Unsupported, NamesAllAtOnce) {
     Scene scene = scene_of(8, 8);
     scene.render.bounces = 2;
-    scene.render.method = "hrc";
+    scene.render.method = "hybrid";
     scene.output.bit_depth = 16;
     EXPECT_EQ(unsupported(scene).size(), 3u);
 }

@@ -1,0 +1,4 @@
+// Low ray pieces in full floats: see lib/hrc_low.glsl for what is read and written. One thread is what it says there.
+#version 430 core
+#define HRC_FORMAT rgba32f
+#include "lib/hrc_low.glsl"
