@@ -132,7 +132,7 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
             lights.bind_storage(glsl::kExactLightsStorage);
             work.dispatches += program.dispatch(params, params.extent);
             std::uint32_t used[2] = {};
-            counters_.read(0, used, sizeof(used));if(getenv("DBG"))fprintf(stderr,"lists %dx%d ratio %d used %u work %u cap %zu counts %d %d %d %d lights %d %d %d %d\n",tiles.x,tiles.y,ratio,used[0],used[1],capacity,params.root_counts.x,params.root_counts.y,params.root_counts.z,params.root_counts.w,params.root_lights.x,params.root_lights.y,params.root_lights.z,params.root_lights.w);
+            counters_.read(0, used, sizeof(used));
             if (used[0] <= capacity) {
                 work.bytes += used[0] * std::size_t(32) + heads.bytes();
                 return used[1];
@@ -150,7 +150,6 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
         ratio = exact.coarse_tile / glsl::kExactTile;
     }
     const std::uint32_t list_work = make(band.params.tiles, glsl::kExactTile, ratio, false, heads_, entries_, lights_);
-    if(getenv("DBGH")){ std::vector<std::uint32_t> h(4*lists_of(band.params.tiles)); heads_.read(0,h.data(),h.size()*4); double n[4]={},l[4]={}; int open=0,dark=0,mx=0; std::size_t at=0; for(std::size_t i=0;i<h.size();i+=4){ if(h[i]==glsl::kExactOpen) ++open; else if(h[i]==glsl::kExactDark) ++dark; else { int c[4]={int(h[i+1]&0xffff),int(h[i+2]&0xffff),int(h[i+3]&0xff),int((h[i+3]>>16)&0xff)}; int t=0; for(int k=0;k<4;++k){n[k]+=c[k]; t+=c[k];} if(t>mx){mx=t;at=i/4;} l[0]+=h[i+1]>>16; } } double L=h.size()/4; fprintf(stderr,"lists %g open %d dark %d avg %.2f %.2f %.2f %.2f max %d at tile %zu %zu sector %zu\n",L,open,dark,n[0]/L,n[1]/L,n[2]/L,n[3]/L,mx,(at/exact.sectors)%band.params.tiles.x,(at/exact.sectors)/band.params.tiles.x,at%exact.sectors);}
     band.always_finishes = std::uint64_t(list_work) * static_cast<std::uint64_t>(exact.sectors) < kMostWork;
     return work;
 }
@@ -307,12 +306,10 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         });
         std::vector<std::uint32_t> counted(zero.size());
         counters_.read(0, counted.data(), counted.size() * 4);
-        if (!getenv("DBGC") && counted[glsl::kExactCountSpent] != 0)
+        if (counted[glsl::kExactCountSpent] != 0)
             throw DeviceError("The scene is too dense for the method 'exact' on this device: at " +
                               std::to_string(counted[glsl::kExactCountSpent]) + " points its loops ran out of iterations.");
         points_solved_ += std::accumulate(counted.begin() + glsl::kExactCountTiles, counted.end(), std::size_t(0));
-        if (getenv("DBGC")) { double n=counted[11]; fprintf(stderr,"jobs %g steps %.1f straights %.1f discs %.1f changes %.1f\n",n,counted[0]/n,counted[1]/n,counted[2]/n,counted[7]/n);}
-        if (getenv("DBG")) for (std::size_t level = 1; level < kLevels; ++level) { std::size_t n=0; for (std::size_t i=0;i<tiles;++i) n+=counted[glsl::kExactCountTiles+level*tiles+i]; fprintf(stderr,"points level %zu: %zu\n",level,n);}
         settings.give(std::move(band.value));
         settings.give(std::move(band.slope_x));
         settings.give(std::move(band.slope_y));

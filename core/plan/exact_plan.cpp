@@ -9,13 +9,18 @@
 
 namespace penumbra {
 
-ExactSettings exact_settings(Quality quality) {
-    if (getenv("TOL")) return {.tolerance = atof(getenv("TOL")), .kink_cell = atoi(getenv("KINK")), .strict_dark = getenv("STRICT") != nullptr};
-    // Points of the measured front (docs/benchmarks.md).
+ExactSettings exact_settings(Quality quality, double smallest_light) {
+    // Points of the measured front (docs/benchmarks.md). The smaller a light, the harder the edges of its shadows and the
+    // thinner its beams, which a cell must not step over.
+    const auto cell = [&](double lights) {
+        int px = 1;
+        while (px < glsl::kExactCell && 2 * px <= lights * smallest_light) px *= 2;
+        return smallest_light > 0 ? px : glsl::kExactCell;
+    };
     switch (quality) {
-        case Quality::draft: return {.tolerance = 6e-2, .kink_cell = 8, .strict_dark = false};
-        case Quality::standard: return {.tolerance = 1.2e-2, .kink_cell = 8, .strict_dark = true};
-        case Quality::high: return {.tolerance = 2e-3, .kink_cell = 4, .strict_dark = true};
+        case Quality::draft: return {.tolerance = 6e-2, .kink_cell = cell(2), .strict_dark = false};
+        case Quality::standard: return {.tolerance = 1.2e-2, .kink_cell = cell(1), .strict_dark = true};
+        case Quality::high: return {.tolerance = 2e-3, .kink_cell = std::min(cell(0.5), 4), .strict_dark = true};
     }
     return {};
 }
@@ -23,11 +28,10 @@ ExactSettings exact_settings(Quality quality) {
 ExactPlan plan_exact(const Scene& scene, PackedOutline outline, glm::ivec2 canvas, bool software) {
     ExactPlan plan;
     plan.used = true;
-    plan.settings = exact_settings(scene.render.quality);
+    plan.settings = exact_settings(scene.render.quality, outline.smallest_light);
     // A sector's list is asked once for each of its edges: more pieces want narrower sectors.
     const std::size_t pieces = outline.pieces;
     plan.sectors = pieces <= 4 ? 8 : pieces <= 24 ? 16 : pieces <= 400 ? 32 : 64;
-    if (getenv("SECT")) plan.sectors = atoi(getenv("SECT"));
     plan.first_axis = 0.0927;
     plan.coarse_tile = pieces > 48 ? 4 * glsl::kExactTile : 0;
     plan.sky_nodes = scene.sky.gradient.empty() ? 0 : 2048;

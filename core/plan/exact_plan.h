@@ -19,7 +19,8 @@ struct ExactSettings {
     int kink_cell = 1;          // px: cells larger than this are split where a shadow's edge may cross them
     bool strict_dark = false;   // pixels between light and dark are always solved
 };
-ExactSettings exact_settings(Quality quality);
+// `smallest_light`: px, 0 where only the sky shines.
+ExactSettings exact_settings(Quality quality, double smallest_light);
 
 struct ExactPlan {
     bool used = false;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <map>
 #include <set>
@@ -11,14 +12,13 @@
 #include "core/plan/pack.h"
 #include "core/reference/boundary.h"
 #include "core/reference/sky.h"
+#include "core/reference/sweep.h"
 #include "glsl/exact.h"
 
 namespace penumbra {
 namespace {
 
 using reference::Piece;
-
-constexpr std::size_t kMostPieces = 500'000;
 
 // Gives corners that are equal but for rounding the same single-precision coordinates.
 class Corners {
@@ -123,10 +123,49 @@ private:
     std::set<std::size_t> members_, firsts_;
 };
 
+// Points of the view along each axis that a survey looks from.
+constexpr int kSurvey = 6;
+
+double survey_intervals(const Scene& scene, const reference::Boundary& boundary) {
+    std::vector<char> shining;
+    for (const Piece& piece : boundary.pieces()) shining.push_back(boundary.material_of(piece).emission != Colour(0));
+    const bool dark = reference::SkyIntegral(scene.sky).is_black();
+    reference::Sweep sweep(boundary, dark ? &shining : nullptr);
+    const ViewRect view = scene.canvas.view_or_default();
+    double intervals = 0;
+    int points = 0;
+    for (int y = 0; y < kSurvey; ++y) {
+        for (int x = 0; x < kSurvey; ++x) {
+            // Not quite regular, for scenes that are.
+            const Point p{view.x + (x + 0.5 + 0.13 * (y % 3 - 1)) * view.w / kSurvey,
+                          view.y + (y + 0.5 + 0.11 * (x % 3 - 1)) * view.h / kSurvey};
+            if (boundary.is_solid(p)) continue;
+            intervals += double(sweep.look(p, {1, 0}, 0, false).size());
+            ++points;
+        }
+    }
+    return points > 0 ? intervals / points : 0;
+}
+
+// Extent (world units) of the smallest body that emits.
+double smallest_light(const reference::Boundary& boundary) {
+    std::map<int, reference::Box> boxes;
+    for (const Piece& piece : boundary.pieces()) {
+        if (boundary.material_of(piece).emission == Colour(0)) continue;
+        const reference::Box box = piece.box();
+        reference::Box& all = boxes[piece.body];
+        all.add(box.low);
+        all.add(box.high);
+    }
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const auto& [body, box] : boxes) smallest = std::min(smallest, std::max(box.high.x - box.low.x, box.high.y - box.low.y));
+    return boxes.empty() ? 0 : smallest;
+}
+
 }  // namespace
 
-PackedOutline pack_outline(const Scene& scene, double radiance_scale) {
-    const reference::Boundary boundary(scene, kMostPieces, false);
+PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool survey, std::size_t most_pieces) {
+    const reference::Boundary boundary(scene, most_pieces, false);
     PackedOutline out;
     if (!boundary.problems().empty()) {
         out.fits = false;
@@ -136,6 +175,8 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale) {
     Corners corners(frame);
     const double scale = frame.pixels_per_unit;
     const auto vec = [](glm::dvec2 a, glm::dvec2 b) { return glm::vec4(glm::vec2(a), glm::vec2(b)); };
+    out.smallest_light = smallest_light(boundary) * scale;
+    if (survey) out.mean_intervals = survey_intervals(scene, boundary);
     const WholeCircles whole(boundary);
     // Kind by kind, what emits first.
     for (const Kind kind : {Kind::straight, Kind::disc, Kind::arc, Kind::ellipse}) {

@@ -21,11 +21,14 @@ struct PackedOutline {
     std::size_t pieces = 0;
     std::size_t emitting = 0;
     bool fits = true;                       // false: too many pieces
+    double smallest_light = 0;              // px: extent of the smallest body that emits; 0: none does
+    double mean_intervals = 0;              // of direction that a point tells apart, over a few points; when asked for
     std::size_t bytes() const { return 16 * (entries.size() + lights_of.size()); }
 };
 
-// Emission is divided by `radiance_scale`. Corners that two pieces share stay equal to the last bit.
-PackedOutline pack_outline(const Scene& scene, double radiance_scale);
+// Emission is divided by `radiance_scale`. Corners that two pieces share stay equal to the last bit. `survey` asks for
+// `mean_intervals`, which tells how dear the scene is. Expects at most `most_pieces`, else `fits` is false.
+PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool survey, std::size_t most_pieces);
 
 // Two texels a node, one node more than `nodes`: the integral of the sky's radiance from angle 0 on, and its radiance.
 std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scale);

@@ -6,12 +6,16 @@
 #include <numbers>
 
 #include "core/device_error.h"
+#include "core/plan/choose.h"
 #include "core/plan/pack.h"
 #include "core/plan/sky.h"
 #include "glsl/scene_records.h"
 
 namespace penumbra {
 namespace {
+
+// More outline than this is refused by the method `exact`.
+constexpr std::size_t kMostPieces = 500'000;
 
 // The composed picture leaves the device in bands of this size.
 constexpr std::size_t kBandBytes = std::size_t(64) << 20;
@@ -85,6 +89,14 @@ void check_size(glm::ivec2 size, std::size_t texel_bytes, const DeviceLimits& li
 }
 
 // hrc: half floats where full ones would take more than the cascades of rc may; refused where those are too many as well.
+bool hrc_fits(const Scene& scene, glm::ivec2 canvas, const DeviceLimits& limits) {
+    const HrcPlan hrc = plan_hrc(canvas, scene.canvas.margin / scene.canvas.pixel_size(), hrc_settings(scene.render.quality));
+    for (const HrcQuadrant& q : hrc.quadrants)
+        for (const HrcLevel& level : q.levels)
+            if (std::max(q.rows, level.planes * level.rays) > limits.max_texture_side) return false;
+    return hrc_bytes(hrc, 8) <= (limits.software ? kMostHrcBytes : kMostHrcBytesOnGpu);
+}
+
 void fit_hrc(Plan& plan, double peak, const DeviceLimits& limits) {
     plan.half_floats = hrc_bytes(plan.hrc, 16) > kFullFloatBytes;
     if (plan.half_floats) plan.radiance_scale = peak > 0 ? peak : 1.0;
@@ -190,12 +202,28 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
     Plan plan;
     plan.canvas = {scene.canvas.width, scene.canvas.height};
     plan.grid = plan_grid(scene.canvas);
-    const bool brute_force = scene.render.method == "reference";
-    const bool exact = scene.render.method == "exact";
-    plan.bilinear_fix = scene.render.method == "rc_fix";
-    const bool holographic = scene.render.method == "hrc";
-    plan.method = scene.render.method == "auto" ? "rc" : scene.render.method;
-    plan.method_reason = scene.render.method == "auto" ? "the fastest method of this version" : "asked for";
+    plan.method = scene.render.method;
+    plan.method_reason = "asked for";
+    PackedOutline outline;
+    if (plan.method == "auto") {
+        outline = pack_outline(scene, 1.0, true, most_surveyed_pieces());
+        const MethodChoice choice = choose_method(outline);
+        plan.method = choice.method;
+        plan.method_reason = choice.reason;
+        if (plan.method == "hrc" && !hrc_fits(scene, plan.canvas, limits)) {
+            plan.method = "rc";
+            plan.method_reason += "; too large a picture for hrc on this device";
+        }
+    } else if (plan.method == "exact") {
+        outline = pack_outline(scene, 1.0, false, kMostPieces);
+        if (!outline.fits)
+            throw DeviceError("The method 'exact' cannot take this scene: its outline has more than " +
+                              std::to_string(kMostPieces) + " pieces.");
+    }
+    const bool brute_force = plan.method == "reference";
+    const bool exact = plan.method == "exact";
+    plan.bilinear_fix = plan.method == "rc_fix";
+    const bool holographic = plan.method == "hrc";
 
     double peak = brightest(scene.sky);
     bool has_bitmaps = false;
@@ -232,7 +260,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
     if (brute_force)
         plan.reference = plan_reference(scene, limits);
     else if (exact)
-        plan.exact = plan_exact(scene, pack_outline(scene, 1.0), plan.canvas, limits.software);
+        plan.exact = plan_exact(scene, std::move(outline), plan.canvas, limits.software);
     else if (holographic)
         plan.hrc = plan_hrc(plan.canvas, scene.canvas.margin / scene.canvas.pixel_size(), hrc_settings(scene.render.quality));
     else

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include "core/plan/choose.h"
+
+#include <cmath>
+#include <sstream>
+
+namespace penumbra {
+namespace {
+
+// Where `exact` takes as long as `rc` of the same quality, or up to twice that at a hundredth of its error.
+constexpr double kMostCost = 25'000;
+
+}  // namespace
+
+double exact_cost(const PackedOutline& outline) { return outline.mean_intervals * double(outline.pieces); }
+
+std::size_t most_surveyed_pieces() { return 20'000; }
+
+MethodChoice choose_method(const PackedOutline& outline) {
+    if (!outline.fits) return {"hrc", "more than " + std::to_string(most_surveyed_pieces()) + " pieces of outline"};
+    std::ostringstream seen;
+    seen << outline.pieces << " pieces of outline, of which a point tells " << std::round(outline.mean_intervals)
+         << " intervals of direction apart";
+    if (exact_cost(outline) <= kMostCost) return {"exact", seen.str() + ": solved sooner than sampled"};
+    return {"hrc", seen.str() + ": sampled sooner than solved"};
+}
+
+}  // namespace penumbra

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Which method `auto` is for a scene: docs/methods/auto.md tells the figures behind it.
+#pragma once
+
+#include <string>
+
+#include "core/plan/device_limits.h"
+#include "core/plan/pack_outline.h"
+#include "core/scene/scene.h"
+
+namespace penumbra {
+
+struct MethodChoice {
+    std::string method;  // "exact", "hrc" or "rc"
+    std::string reason;
+};
+
+// What `exact` takes for a pixel, in units of about 0.4 processor microseconds of llvmpipe: the intervals that a point tells
+// apart times the pieces of outline (measured over the public scenes; right within a factor of two).
+double exact_cost(const PackedOutline& outline);
+
+// `outline` with its survey.
+MethodChoice choose_method(const PackedOutline& outline);
+
+// The most pieces of outline for which `auto` looks closer.
+std::size_t most_surveyed_pieces();
+
+}  // namespace penumbra
