@@ -100,7 +100,8 @@ Span round_span(vec4 vx, vec4 vy, vec4 radius, vec4 ahead, out vec4 sx, out vec4
 Span disc_span(vec4 cx, vec4 cy, vec4 radius, vec4 ahead) {
     vec4 sx, sy, ex, ey;
     Span span = round_span(cx - px, cy - py, radius, ahead, sx, sy, ex, ey);
-    set_ends(span, span.seen, sx, sy, ex, ey);
+    bvec4 outside = span.seen;
+    set_ends(span, outside, sx, sy, ex, ey);
     return span;
 }
 
@@ -319,22 +320,22 @@ void change(bvec4 changed, float sector_angle) {
             clearance = pick(clearance, other.clearance, round_ones);
         }
         if (kArcs != 0) {
-            e0 = texelFetch(entries, entry.x + 1), e1 = texelFetch(entries, entry.y + 1), e2 = texelFetch(entries, entry.z + 1), e3 = texelFetch(entries, entry.w + 1);
+            e0 = texelFetch(entries, entry.x + 1);
+            e1 = texelFetch(entries, entry.y + 1);
+            e2 = texelFetch(entries, entry.z + 1);
+            e3 = texelFetch(entries, entry.w + 1);
             Span other = arc_span(x0, y0, x1, vec4(e0.x, e1.x, e2.x, e3.x), vec4(e0.y, e1.y, e2.y, e3.y), vec4(e0.z, e1.z, e2.z, e3.z), vec4(e0.w, e1.w, e2.w, e3.w), now);
             start = pick(start, other.start, arcs);
             start_depth = pick(start_depth, other.start_depth, arcs);
             end_depth = pick(end_depth, other.end_depth, arcs);
             clearance = pick(clearance, other.clearance, arcs);
         }
-        for (int i = 0; i < 4 && kEllipses != 0; ++i) {
-            bvec4 this_one = both(ellipses, equal(ivec4(i), ivec4(0, 1, 2, 3)));
-            {
-                Span other = ellipse_at(i == 0 ? entry.x : i == 1 ? entry.y : i == 2 ? entry.z : entry.w, now);
-                start = pick(start, other.start, this_one);
-                start_depth = pick(start_depth, other.start_depth, this_one);
-                end_depth = pick(end_depth, other.end_depth, this_one);
-                clearance = pick(clearance, other.clearance, this_one);
-            }
+        if (kEllipses != 0) {
+            Span o0 = ellipse_at(entry.x, now), o1 = ellipse_at(entry.y, now), o2 = ellipse_at(entry.z, now), o3 = ellipse_at(entry.w, now);
+            start = pick(start, vec4(o0.start.x, o1.start.y, o2.start.z, o3.start.w), ellipses);
+            start_depth = pick(start_depth, vec4(o0.start_depth.x, o1.start_depth.y, o2.start_depth.z, o3.start_depth.w), ellipses);
+            end_depth = pick(end_depth, vec4(o0.end_depth.x, o1.end_depth.y, o2.end_depth.z, o3.end_depth.w), ellipses);
+            clearance = pick(clearance, vec4(o0.clearance.x, o1.clearance.y, o2.clearance.z, o3.clearance.w), ellipses);
         }
         // What ends, or what starts, makes the edge; the angle of an edge at distance d turns by 1 / d a pixel.
         bvec4 ends = both(greaterThanEqual(top, vec4(0.0)), lessThanEqual(top_end, now));
@@ -416,8 +417,16 @@ void solve(int tile_index, int first, int count) {
                      texelFetch(distance_texture, x2 + params.border, 0).r, texelFetch(distance_texture, x3 + params.border, 0).r);
     bvec4 solid = lessThanEqual(room, vec4(0.0));
 
-    sum_r = sum_g = sum_b = vec4(0.0);
-    slope_x_r = slope_x_g = slope_x_b = slope_y_r = slope_y_g = slope_y_b = third = vec4(0.0);
+    sum_r = vec4(0.0);
+    sum_g = vec4(0.0);
+    sum_b = vec4(0.0);
+    slope_x_r = vec4(0.0);
+    slope_x_g = vec4(0.0);
+    slope_x_b = vec4(0.0);
+    slope_y_r = vec4(0.0);
+    slope_y_g = vec4(0.0);
+    slope_y_b = vec4(0.0);
+    third = vec4(0.0);
     signature = uvec4(0u);
     int budget = kBudget;
     int list = tile_index * params.sectors;
@@ -437,7 +446,13 @@ void solve(int tile_index, int first, int count) {
             first_arc = first_disc + int(head.z & 0xffffu);
             first_ellipse = first_arc + 2 * int(head.w & 0xffu);
             end_entry = first_ellipse + 4 * int((head.w >> 16) & 0xffu);
-            if (head.x == kExactOpen) first_straight = first_disc = first_arc = first_ellipse = end_entry = 0;
+            if (head.x == kExactOpen) {
+                first_straight = 0;
+                first_disc = 0;
+                first_arc = 0;
+                first_ellipse = 0;
+                end_entry = 0;
+            }
 
             // Without a sky the walk goes from where the first light starts to where the last ends, a little more than that.
             now = vec4(-params.tan_half);
@@ -460,9 +475,12 @@ void solve(int tile_index, int first, int count) {
             from = now;
             top = vec4(kUnknown);
             top_end = vec4(-kFar);
-            top_far = top_end_depth = vec4(1.0);
+            top_far = vec4(1.0);
+            top_end_depth = vec4(1.0);
             top_clearance = vec4(kFar);
-            top_r = top_g = top_b = vec4(0.0);
+            top_r = vec4(0.0);
+            top_g = vec4(0.0);
+            top_b = vec4(0.0);
             top_id = uvec4(0u);
             now = pick(now, limit, solid);
             while (any(lessThan(now, limit)) && budget > 0) {
@@ -480,9 +498,8 @@ void solve(int tile_index, int first, int count) {
                 if (kEllipses != 0) for (int i = first_ellipse; i < end_entry; i += 4) consider(i, ellipse_at(i, ahead));
                 bvec4 found = greaterThanEqual(near_entry, vec4(0.0));
                 next = pick(next, min(next, near_end), found);
-                // A loop, since Mesa 22 skips loops that no invocation enters, but no branches.
                 bvec4 changed = both(notEqual(near_entry, top), lessThan(now, limit));
-                for (int once = int(any(changed)); once > 0; --once) change(changed, sector.z);
+                change(changed, sector.z);
                 top_end = pick(vec4(-kFar), near_end, found);
                 top_far = near_far;
                 now = next;
@@ -497,7 +514,8 @@ void solve(int tile_index, int first, int count) {
     }
 
     // A list that takes more than a whole budget is cut off.
-    if (s < params.sectors || budget <= 0) atomicAdd(counters[s < params.sectors ? kExactCountUnfinished : kExactCountSpent], 1u);
+    if (s < params.sectors) atomicAdd(counters[kExactCountUnfinished], 1u);
+    if (s >= params.sectors && budget <= 0) atomicAdd(counters[kExactCountSpent], 1u);
     store(p0, s, vec3(sum_r.x, sum_g.x, sum_b.x), signature.x, vec4(slope_x_r.x, slope_x_g.x, slope_x_b.x, third.x), vec3(slope_y_r.x, slope_y_g.x, slope_y_b.x));
     if (p1 != p0) store(p1, s, vec3(sum_r.y, sum_g.y, sum_b.y), signature.y, vec4(slope_x_r.y, slope_x_g.y, slope_x_b.y, third.y), vec3(slope_y_r.y, slope_y_g.y, slope_y_b.y));
     if (p2 != p1) store(p2, s, vec3(sum_r.z, sum_g.z, sum_b.z), signature.z, vec4(slope_x_r.z, slope_x_g.z, slope_x_b.z, third.z), vec3(slope_y_r.z, slope_y_g.z, slope_y_b.z));
