@@ -103,6 +103,19 @@ void Texture2D::fill(GLenum format, GLenum type, const void* value) {
     check_errors("filling a texture");
 }
 
+void Texture2D::clear(GLuint value) {
+    GLuint framebuffer = 0;
+    glGenFramebuffers(1, &framebuffer);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+    glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, id_, 0);
+    const GLuint values[4] = {value, value, value, value};
+    glClearBufferuiv(GL_COLOR, 0, values);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glDeleteFramebuffers(1, &framebuffer);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    check_errors("clearing a texture");
+}
+
 BufferTexture::BufferTexture(GLenum internal_format, const void* data, std::size_t bytes) : bytes_(bytes) {
     // A buffer texture of no bytes is not complete: keep one texel.
     static constexpr unsigned char kNothing[16] = {};

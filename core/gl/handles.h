@@ -55,6 +55,8 @@ public:
     // The whole level, rows from y = 0 down, tightly packed.
     void read(GLenum format, GLenum type, void* out) const;
     void fill(GLenum format, GLenum type, const void* value);
+    // All texels of an unsigned integer format, on the device.
+    void clear(GLuint value);
 
 private:
     GLenum format_ = 0;

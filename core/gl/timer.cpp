@@ -14,6 +14,8 @@ void PassTimer::mark() {
         queries_.push_back(query);
     }
     glQueryCounter(queries_[used_++], GL_TIMESTAMP);
+    // NVIDIA 580 stamps the last mark before a wait at the end of that wait unless the mark was sent off at once.
+    if (used_ % 2 == 0) glFlush();
 }
 
 std::vector<double> PassTimer::read() {

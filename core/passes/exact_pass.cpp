@@ -248,9 +248,8 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         band.slope_y = settings.take(GL_RGBA32F, grid);
         band.state = settings.take(GL_R32UI, grid);
         band.leaf = settings.take(GL_R32UI, params.tiles * glsl::kExactTile);
-        const std::uint32_t unasked = 0, whole = glsl::kExactCell;
-        band.state.fill(GL_RED_INTEGER, GL_UNSIGNED_INT, &unasked);
-        band.leaf.fill(GL_RED_INTEGER, GL_UNSIGNED_INT, &whole);
+        band.state.clear(0);
+        band.leaf.clear(glsl::kExactCell);
 
         const auto split = [&](int level, bool ask_first) {
             PassWork work;
