@@ -73,7 +73,7 @@ struct ExactParams {
     int tile_px;
     int parent_ratio;    // tiles a parent tile is across; 0: one list for all
     int sectors;
-    int pad3;
+    int largest_cell;    // px: larger cells are always split
     int pad4;
     float tan_half;      // tangent of half a sector
     int sky_kind;        // 0: none, 1: constant, 2: nodes

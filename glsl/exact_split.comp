@@ -64,7 +64,7 @@ void main() {
     float relative_to = params.tolerance * (0.25 * (b0 + b1 + b2 + b3) + params.floor_share * texelFetch(mean_light, 0).r);
     bool same = v0.a == v1.a && v0.a == v2.a && v0.a == v3.a;
 
-    bool split = room < clear;
+    bool split = room < clear || h > params.largest_cell;
     // The interpolation is exact for quadratics; what it leaves out is at most 0.05 h^3 times the third derivative.
     float third = max(max(x0.a, x1.a), max(x2.a, x3.a));
     split = split || 0.05 * float(h * h * h) * third > relative_to;

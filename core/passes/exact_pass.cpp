@@ -217,6 +217,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
     params.sky_nodes = exact.sky_nodes;
     params.tolerance = static_cast<float>(exact.settings.tolerance);
     params.kink_cell = exact.settings.kink_cell;
+    params.largest_cell = exact.settings.largest_cell;
     params.strict_dark = exact.settings.strict_dark ? 1 : 0;
     params.floor_share = 0.05f;
     params.root_counts = {outline.counts[0], outline.counts[1], outline.counts[2], outline.counts[3]};

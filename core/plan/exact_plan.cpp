@@ -9,7 +9,7 @@
 
 namespace penumbra {
 
-ExactSettings exact_settings(Quality quality, double smallest_light) {
+ExactSettings exact_settings(Quality quality, double smallest_light, double smallest_body) {
     // Points of the measured front (docs/benchmarks.md). The smaller a light, the harder the edges of its shadows and the
     // thinner its beams, which a cell must not step over.
     const auto cell = [&](double lights) {
@@ -17,10 +17,13 @@ ExactSettings exact_settings(Quality quality, double smallest_light) {
         while (px < glsl::kExactCell && 2 * px <= lights * smallest_light) px *= 2;
         return smallest_light > 0 ? px : glsl::kExactCell;
     };
+    // The shadow of something smaller than a cell could fall between the corners, which then all see the whole light.
+    int largest = glsl::kExactCell;
+    while (smallest_light > 0 && largest > 1 && largest > smallest_body) largest /= 2;
     switch (quality) {
-        case Quality::draft: return {.tolerance = 6e-2, .kink_cell = cell(2), .strict_dark = false};
-        case Quality::standard: return {.tolerance = 1.2e-2, .kink_cell = cell(1), .strict_dark = true};
-        case Quality::high: return {.tolerance = 2e-3, .kink_cell = std::min(cell(0.5), 4), .strict_dark = true};
+        case Quality::draft: return {.tolerance = 6e-2, .kink_cell = cell(2), .strict_dark = false, .largest_cell = largest};
+        case Quality::standard: return {.tolerance = 1.2e-2, .kink_cell = cell(1), .strict_dark = true, .largest_cell = largest};
+        case Quality::high: return {.tolerance = 2e-3, .kink_cell = std::min(cell(0.5), 4), .strict_dark = true, .largest_cell = largest};
     }
     return {};
 }
@@ -28,7 +31,7 @@ ExactSettings exact_settings(Quality quality, double smallest_light) {
 ExactPlan plan_exact(const Scene& scene, PackedOutline outline, glm::ivec2 canvas, bool software) {
     ExactPlan plan;
     plan.used = true;
-    plan.settings = exact_settings(scene.render.quality, outline.smallest_light);
+    plan.settings = exact_settings(scene.render.quality, outline.smallest_light, outline.smallest_body);
     // A sector's list is asked once for each of its edges: more pieces want narrower sectors.
     const std::size_t pieces = outline.pieces;
     plan.sectors = pieces <= 4 ? 8 : pieces <= 24 ? 16 : pieces <= 400 ? 32 : 64;

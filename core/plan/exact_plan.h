@@ -18,9 +18,10 @@ struct ExactSettings {
     double tolerance = 0;       // of the interpolation, relative to the light there and a share of the mean
     int kink_cell = 1;          // px: cells larger than this are split where a shadow's edge may cross them
     bool strict_dark = false;   // pixels between light and dark are always solved
+    int largest_cell = 8;       // px: larger ones are always split
 };
-// `smallest_light`: px, 0 where only the sky shines.
-ExactSettings exact_settings(Quality quality, double smallest_light);
+// Extents of the smallest light (0 where only the sky shines) and of the smallest body, px.
+ExactSettings exact_settings(Quality quality, double smallest_light, double smallest_body);
 
 struct ExactPlan {
     bool used = false;

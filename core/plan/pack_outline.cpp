@@ -147,11 +147,11 @@ double survey_intervals(const Scene& scene, const reference::Boundary& boundary)
     return points > 0 ? intervals / points : 0;
 }
 
-// Extent (world units) of the smallest body that emits.
-double smallest_light(const reference::Boundary& boundary) {
+// Extent (world units) of the smallest body, of those that emit or of all.
+double smallest_body(const reference::Boundary& boundary, bool only_lights) {
     std::map<int, reference::Box> boxes;
     for (const Piece& piece : boundary.pieces()) {
-        if (boundary.material_of(piece).emission == Colour(0)) continue;
+        if (only_lights && boundary.material_of(piece).emission == Colour(0)) continue;
         const reference::Box box = piece.box();
         reference::Box& all = boxes[piece.body];
         all.add(box.low);
@@ -175,7 +175,8 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
     Corners corners(frame);
     const double scale = frame.pixels_per_unit;
     const auto vec = [](glm::dvec2 a, glm::dvec2 b) { return glm::vec4(glm::vec2(a), glm::vec2(b)); };
-    out.smallest_light = smallest_light(boundary) * scale;
+    out.smallest_light = smallest_body(boundary, true) * scale;
+    out.smallest_body = smallest_body(boundary, false) * scale;
     if (survey) out.mean_intervals = survey_intervals(scene, boundary);
     const WholeCircles whole(boundary);
     // Kind by kind, what emits first.

@@ -22,6 +22,7 @@ struct PackedOutline {
     std::size_t emitting = 0;
     bool fits = true;                       // false: too many pieces
     double smallest_light = 0;              // px: extent of the smallest body that emits; 0: none does
+    double smallest_body = 0;               // px: extent of the smallest of all
     double mean_intervals = 0;              // of direction that a point tells apart, over a few points; when asked for
     std::size_t bytes() const { return 16 * (entries.size() + lights_of.size()); }
 };
