@@ -169,7 +169,7 @@ struct Renderer::Impl {
         settings = {factor * 6'000'000, factor * 300'000, factor * 1'000'000, &textures};
     }
 
-    RenderResult render(const Scene& scene);
+    RenderResult render(const Scene& scene, const std::string& not_exact = {});
     gl::Texture2D render_hrc(const Plan& plan, const DistanceField& field, Recorder& record);
     void check_thread() const {
         if (std::this_thread::get_id() != thread)
@@ -231,10 +231,10 @@ gl::Texture2D Renderer::Impl::render_hrc(const Plan& plan, const DistanceField& 
 // ---- end of hrc
 
 // The frame, in the order in which it happens.
-RenderResult Renderer::Impl::render(const Scene& scene) {
+RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_exact) {
     const Clock::time_point start = Clock::now();
     const bool linear = scene.output.format != "png";
-    const Plan plan = make_plan(scene, limits);
+    const Plan plan = make_plan(scene, limits, not_exact);
     const PackedScene packed = pack_scene(scene, plan.radiance_scale);
     const SceneBuffers buffers(packed, scene.sky, plan);
     buffers.bind();
@@ -330,7 +330,13 @@ const DeviceInfo& Renderer::device() const { return impl_->info; }
 RenderResult Renderer::render(const Scene& scene) {
     impl_->check_thread();
     impl_->context.make_current();
-    return impl_->render(scene);
+    try {
+        return impl_->render(scene);
+    } catch (const TooDense& problem) {
+        // The survey that `auto` chooses by looks from a few points only.
+        if (scene.render.method != "auto") throw;
+        return impl_->render(scene, problem.what());
+    }
 }
 
 std::string Renderer::self_test() {

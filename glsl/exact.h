@@ -45,7 +45,7 @@ const int kExactCountersStorage = 4;
 // Counters, in uints. From kExactCountLevel on, four a level: the solver's jobs, and the groups of its dispatch. From
 // kExactCountTiles on, level by level: how many points each tile asks for.
 const int kExactCountEntries = 0;   // texels of entries that lists reserved
-const int kExactCountWork = 1;      // most loop iterations that one list may take
+const int kExactCountWork = 1;      // most loop iterations that one list may take, or kExactTooLong
 const int kExactCountSpent = 2;     // points whose loops ran out
 const int kExactCountUnfinished = 3;  // points that go on in another dispatch
 const int kExactCountLevel = 4;
@@ -61,6 +61,7 @@ const int kExactCountTiles = 24;
 // A list without entries has the first texel kExactOpen (nothing in sight but the sky) or kExactDark.
 const uint kExactOpen = 0xfffffffeu;
 const uint kExactDark = 0xffffffffu;
+const uint kExactTooLong = 0x7fffffffu;  // a list has more entries than its head can count
 
 struct ExactParams {
     ivec2 origin;

@@ -282,6 +282,7 @@ void main() {
     uint total = kept.x + kept.y + kept.z + kept.w;
     write_head(list, total > 0u ? begin : (sky ? kExactOpen : kExactDark), kept, kept_lights);
     // Each step of the walk asks every entry; each entry starts and ends at most one interval.
-    bool counted = params.wide != 0 || (kept.x < 65536u && kept.y < 65536u && kept.z < 256u && kept.w < 256u && total < 20000u);
-    atomicMax(counters[kExactCountWork], params.wide != 0 ? 0u : counted ? (2u * total + 3u) * (total + 5u) : 0x7fffffffu);
+    bool fits_head = params.wide != 0 ? all(lessThan(kept_lights, uvec4(65536u)))
+                                      : kept.x < 65536u && kept.y < 65536u && kept.z < 256u && kept.w < 256u && total < 20000u;
+    atomicMax(counters[kExactCountWork], !fits_head ? kExactTooLong : params.wide != 0 ? 0u : (2u * total + 3u) * (total + 5u));
 }

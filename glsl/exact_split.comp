@@ -46,7 +46,7 @@ void main() {
     if (pixel.x >= params.canvas.x || pixel.y >= params.canvas.y) return;
 
     ivec2 middle = min(pixel + h / 2, params.canvas - 1);
-    float room = texelFetch(distance_texture, middle + params.border, 0).r;
+    float room = texelFetch(distance_texture, min(middle + params.border, textureSize(distance_texture, 0) - 1), 0).r;
     float clear = 0.7072 * float(h) + 0.01;
     if (room < -clear) return;  // all of it inside a shape
 
@@ -69,7 +69,7 @@ void main() {
     float third = max(max(x0.a, x1.a), max(x2.a, x3.a));
     split = split || 0.05 * float(h * h * h) * third > relative_to;
     if (!same) {
-        split = split || h > params.kink_cell || (params.strict_dark != 0 && darkest <= 0.0 && brightest > 0.0);
+        split = split || h > params.kink_cell || (params.strict_dark != 0 && darkest <= 0.0);
         // A shadow's edge bends the light by at most the change of its slope across the cell.
         vec4 y0 = imageLoad(slope_y_image, corner);
         vec4 y1 = imageLoad(slope_y_image, corner + ivec2(h, 0));

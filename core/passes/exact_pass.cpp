@@ -133,14 +133,17 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
             work.dispatches += program.dispatch(params, params.extent);
             std::uint32_t used[2] = {};
             counters_.read(0, used, sizeof(used));
+            if (used[1] == glsl::kExactTooLong)
+                throw TooDense("The scene is too dense for the method 'exact': from one tile, a sector of directions holds more pieces of "
+                               "outline than can be counted.");
             if (used[0] <= capacity) {
                 work.bytes += used[0] * std::size_t(32) + heads.bytes();
                 return used[1];
             }
             capacity = used[0] + std::size_t(used[0]) / 4;
             if (capacity * 16 > (std::size_t(1) << 27))
-                throw DeviceError("The scene is too dense for the method 'exact': its lists of what may be seen need " +
-                                  std::to_string(capacity >> 16) + " MiB.");
+                throw TooDense("The scene is too dense for the method 'exact': its lists of what may be seen need " +
+                               std::to_string(capacity >> 16) + " MiB.");
         }
     };
     int ratio = 0;
@@ -307,8 +310,8 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         std::vector<std::uint32_t> counted(zero.size());
         counters_.read(0, counted.data(), counted.size() * 4);
         if (counted[glsl::kExactCountSpent] != 0)
-            throw DeviceError("The scene is too dense for the method 'exact' on this device: at " +
-                              std::to_string(counted[glsl::kExactCountSpent]) + " points its loops ran out of iterations.");
+            throw TooDense("The scene is too dense for the method 'exact' on this device: at " +
+                           std::to_string(counted[glsl::kExactCountSpent]) + " points its loops ran out of iterations.");
         points_solved_ += std::accumulate(counted.begin() + glsl::kExactCountTiles, counted.end(), std::size_t(0));
         settings.give(std::move(band.value));
         settings.give(std::move(band.slope_x));

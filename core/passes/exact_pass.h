@@ -9,12 +9,19 @@
 #include <utility>
 #include <vector>
 
+#include "core/device_error.h"
 #include "core/gl/program.h"
 #include "core/gl/storage_buffer.h"
 #include "core/passes/frame.h"
 #include "core/plan/plan.h"
 
 namespace penumbra {
+
+// A scene that the method `exact` cannot take on this device; others can.
+class TooDense : public DeviceError {
+public:
+    using DeviceError::DeviceError;
+};
 
 // Reads the distance. Writes the mean radiance of each pixel by the method `exact`: lists of what each tile may see, the
 // light at corners of cells, cells split where that is not enough, and what lies between.

@@ -46,6 +46,12 @@ ExactPlan plan_exact(const Scene& scene, PackedOutline outline, glm::ivec2 canva
     return plan;
 }
 
+std::size_t exact_bytes(const ExactPlan& plan, glm::ivec2 canvas) {
+    const auto along = [](int pixels) { return static_cast<std::size_t>((pixels + glsl::kExactTile - 1) / glsl::kExactTile * glsl::kExactTile + 1); };
+    // Value and two slopes, whether a point is asked for, and the size of its cell.
+    return along(canvas.x) * along(std::min(plan.band_rows, canvas.y)) * (3 * 16 + 4 + 4);
+}
+
 std::size_t exact_level_points(int level) {
     const auto all = [](int of) {
         const auto side = static_cast<std::size_t>(1 << of) + 1;

@@ -36,6 +36,9 @@ struct ExactPlan {
 
 ExactPlan plan_exact(const Scene& scene, PackedOutline outline, glm::ivec2 canvas, bool software);
 
+// Of the textures that one band of a canvas takes.
+std::size_t exact_bytes(const ExactPlan& plan, glm::ivec2 canvas);
+
 // How many points of a tile the level of this number adds at most: level 0 is the corners of the largest cells,
 // each further level halves the cells, the last are pixels.
 std::size_t exact_level_points(int level);

@@ -84,8 +84,11 @@ public:
             arcs.push_back(i);
         }
         for (const auto& [key, arcs] : circles_) {
-            const int light = boundary.pieces()[arcs.front()].material;
-            bool whole = true;
+            // What the end of the domain cuts off is not hidden: it is not there.
+            const Piece& first = boundary.pieces()[arcs.front()];
+            const Point reach(std::sqrt(reference::length_squared(first.u)));
+            bool whole = boundary.domain().contains(first.center - reach) && boundary.domain().contains(first.center + reach);
+            const int light = first.material;
             for (const std::size_t i : arcs) {
                 const Piece& piece = boundary.pieces()[i];
                 whole = whole && same_light(piece.material, light) && corners_.at(corner(piece.a)) != kMixed &&

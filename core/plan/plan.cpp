@@ -198,7 +198,7 @@ GridPlan plan_grid(const Canvas& canvas) {
     return grid;
 }
 
-Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
+Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string& not_exact) {
     Plan plan;
     plan.canvas = {scene.canvas.width, scene.canvas.height};
     plan.grid = plan_grid(scene.canvas);
@@ -207,7 +207,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
     PackedOutline outline;
     if (plan.method == "auto") {
         outline = pack_outline(scene, 1.0, true, most_surveyed_pieces());
-        const MethodChoice choice = choose_method(outline);
+        const MethodChoice choice = not_exact.empty() ? choose_method(outline) : MethodChoice{"hrc", not_exact};
         plan.method = choice.method;
         plan.method_reason = choice.reason;
         if (plan.method == "hrc" && !hrc_fits(scene, plan.canvas, limits)) {
@@ -267,8 +267,9 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
         plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
     if (peak <= 0 && skip) {
         const double levels = holographic ? double(plan.hrc.quadrants.front().levels.size()) : double(plan.cascades.size());
-        const double rays = brute_force ? plan.reference.rays : (plan.bilinear_fix ? 16.0 : 4.0) * levels;
-        leave_out(brute_force ? "rays" : holographic ? "ray pieces" : "cascades", "nothing emits light", pixels * rays);
+        const double rays = brute_force ? plan.reference.rays : exact ? 1.0 : (plan.bilinear_fix ? 16.0 : 4.0) * levels;
+        leave_out(brute_force ? "rays" : exact ? "points" : holographic ? "ray pieces" : "cascades", "nothing emits light",
+                  pixels * rays);
         plan.cascades.clear();
         plan.reference = {};
         plan.exact = {};
@@ -281,8 +282,10 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
 
     std::size_t largest_area = area(plan.canvas);
     for (const CascadePlan& c : plan.cascades) largest_area = std::max(largest_area, area(c.texture));
-    plan.half_floats = !plan.cascades.empty() && largest_area * 16 > kFullFloatBytes;
+    plan.half_floats = (!plan.cascades.empty() || plan.exact.used) && largest_area * 16 > kFullFloatBytes;
     if (plan.half_floats) plan.radiance_scale = peak > 0 ? peak : 1.0;
+    for (glm::vec4& light : plan.exact.outline.lights_of)
+        light = glm::vec4(glm::vec3(light) / static_cast<float>(plan.radiance_scale), light.a);
     const std::size_t texel = plan.half_floats ? 8 : 16;
     check_size(plan.grid.size, 4, limits, "distance field");
     for (const CascadePlan& c : plan.cascades) check_size(c.texture, texel, limits, "cascade");
@@ -295,6 +298,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits) {
     if (!plan.cascades.empty()) plan.gpu_bytes += 2 * largest_area * texel;
     if (plan.reference.rays > 0) plan.gpu_bytes += 16 * area(plan.canvas);
     if (plan.resolve) plan.gpu_bytes += area(plan.canvas) * texel;
+    if (plan.exact.used) plan.gpu_bytes += area(plan.canvas) * texel + exact_bytes(plan.exact, plan.canvas);
     if (plan.hrc.active()) fit_hrc(plan, peak, limits);
     return plan;
 }

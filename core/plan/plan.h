@@ -111,7 +111,8 @@ std::vector<int> plan_jumps(glm::ivec2 grid);
 GridPlan plan_grid(const Canvas& canvas);
 
 // Precondition: validate(scene) and unsupported(scene) are empty.
+// `not_exact`: why `auto` may not take the method `exact` for this scene; empty: it may.
 // Throws DeviceError when the device cannot hold the picture.
-Plan make_plan(const Scene& scene, const DeviceLimits& limits);
+Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string& not_exact = {});
 
 }  // namespace penumbra

@@ -88,7 +88,7 @@ Agreement compare(const std::vector<glm::vec4>& device, const std::vector<Colour
 }
 
 Scene lamp_and_walls(int width, int height, Quality quality) {
-    Scene scene = with(canvas(width, height),
+    Scene scene = with(rc_canvas(width, height),
                        {shape(Circle{{0.3 * width + 0.13, 0.4 * height + 0.21}, 0.1 * height}, {3, 2, 1}),
                         shape(Rect{{0.6 * width + 0.07, 0.55 * height + 0.11}, {2.3, 0.5 * height}, 17, 0}),
                         shape(Ellipse{{0.83 * width, 0.2 * height}, {0.09 * width, 0.06 * height}, 40}, {0, 0.5, 2})});
@@ -136,7 +136,7 @@ TEST(Cascade, AsItsTwinUnderAGradientSkyWithAMargin) {
 }
 
 TEST(Cascade, AsItsTwinWithoutShapes) {
-    Scene scene = canvas(24, 17);
+    Scene scene = rc_canvas(24, 17);
     scene.sky.gradient = {{10, {0.5, 0, 0}}, {120, {0, 0.7, 0}}, {250, {0.3, 0.3, 0.3}}};
     const Plan plan = make_plan(scene, {});
     const Frame frame = run_frame(scene, plan);
@@ -173,7 +173,7 @@ TEST(Cascade, BandsChangeNothing) {
 
 TEST(Cascade, WritesNothingOutsideItsExtent) {
     shared_context();
-    const Scene scene = canvas(13, 7);
+    const Scene scene = rc_canvas(13, 7);
     const Plan plan = make_plan(scene, {});
     const SceneBuffers buffers(pack_scene(scene, 1), scene.sky, plan);
     buffers.bind();

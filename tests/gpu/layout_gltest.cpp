@@ -13,6 +13,7 @@
 #include "glsl/cascade.h"
 #include "glsl/compose.h"
 #include "glsl/distance.h"
+#include "glsl/exact.h"
 #include "glsl/hrc.h"
 #include "glsl/jump.h"
 #include "glsl/loop_probe.h"
@@ -56,6 +57,22 @@ Offsets hrc_fields() {
             FIELD(HrcParams, first), FIELD(HrcParams, along), FIELD(HrcParams, across),
             FIELD(HrcParams, first_point), FIELD(HrcParams, domain), FIELD(HrcParams, cell),
             FIELD(HrcParams, blur), FIELD(HrcParams, pad1), FIELD(HrcParams, pad2)};
+}
+
+Offsets exact_fields() {
+    return {FIELD(ExactParams, origin), FIELD(ExactParams, extent), FIELD(ExactParams, canvas),
+            FIELD(ExactParams, border), FIELD(ExactParams, tiles), FIELD(ExactParams, parent_tiles),
+            FIELD(ExactParams, first_row), FIELD(ExactParams, tile_px), FIELD(ExactParams, parent_ratio),
+            FIELD(ExactParams, sectors), FIELD(ExactParams, largest_cell), FIELD(ExactParams, pad4),
+            FIELD(ExactParams, tan_half), FIELD(ExactParams, sky_kind), FIELD(ExactParams, sky),
+            FIELD(ExactParams, sky_nodes), FIELD(ExactParams, cell), FIELD(ExactParams, level),
+            FIELD(ExactParams, first_point), FIELD(ExactParams, tile_points),
+            FIELD(ExactParams, first_count), FIELD(ExactParams, capacity), FIELD(ExactParams, continues),
+            FIELD(ExactParams, pad4a), FIELD(ExactParams, tolerance), FIELD(ExactParams, kink_cell),
+            FIELD(ExactParams, floor_share), FIELD(ExactParams, ask_first), FIELD(ExactParams, strict_dark),
+            FIELD(ExactParams, pad0), FIELD(ExactParams, pad1), FIELD(ExactParams, root_counts),
+            FIELD(ExactParams, root_lights), FIELD(ExactParams, wide), FIELD(ExactParams, pad2),
+            FIELD(ExactParams, pad5), FIELD(ExactParams, pad6)};
 }
 
 Offsets compose_fields() {
@@ -108,6 +125,12 @@ std::vector<Layout> layouts() {
           FIELD(ReferenceParams, end_ray), FIELD(ReferenceParams, sky_first), FIELD(ReferenceParams, is_last),
           FIELD(ReferenceParams, domain), FIELD(ReferenceParams, sky)},
          glsl::kReferenceGroupX, glsl::kReferenceGroupY},
+        {"exact_lists.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
+        {"exact_solve.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactSolveGroupX, glsl::kExactGroupY},
+        {"exact_split.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
+        {"exact_jobs.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
+        {"exact_mean.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
+        {"exact_fill.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
         {"hrc_low.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
         {"hrc_low_half.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
         {"hrc_trace.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},

@@ -62,6 +62,27 @@ TEST(FlattenShader, AMissingFileIsNamed) {
     }
 }
 
+// A program for what a scene needs: the same text but for the constants that are given.
+TEST(FlattenShader, GivenConstantsReplaceThoseOfTheirNames) {
+    const FlatShader plain = flatten_shader("exact_solve.comp");
+    const FlatShader lean = flatten_shader("exact_solve.comp", {}, {{"kArcs", 0}, {"kEllipses", 0}, {"kSky", 1}});
+    const auto says = [](const FlatShader& shader, const char* what) { return shader.text.find(what) != std::string::npos; };
+    for (const char* line : {"const int kArcs = 1;", "const int kEllipses = 1;", "const int kSky = 2;", "const int kSlopes = 1;"})
+        EXPECT_TRUE(says(plain, line)) << line;
+    for (const char* line : {"const int kArcs = 0;", "const int kEllipses = 0;", "const int kSky = 1;", "const int kSlopes = 1;"})
+        EXPECT_TRUE(says(lean, line)) << line;
+    for (const char* line : {"const int kArcs = 1;", "const int kEllipses = 1;", "const int kSky = 2;"}) EXPECT_FALSE(says(lean, line)) << line;
+    EXPECT_EQ(lean.lines.size(), plain.lines.size()) << "logs are led back to the same lines";
+    EXPECT_EQ(flatten_shader("exact_solve.comp", {}, {{"kArc", 0}, {"kArcs2", 0}}).text, plain.text) << "whole names only";
+}
+
+// In layouts too, which hold numbers instead of names, and in headers.
+TEST(FlattenShader, GivenConstantsReachLayouts) {
+    const FlatShader shader = flatten_shader("exact_fill.comp", {}, {{"kExactGroupX", 48}});
+    EXPECT_NE(shader.text.find("local_size_x = 48"), std::string::npos);
+    EXPECT_EQ(flatten_shader("exact_fill.comp").text.find("local_size_x = 48"), std::string::npos);
+}
+
 TEST(TranslateLog, MesaAndNvidia) {
     const FlatShader shader = flatten_shader("cascade.comp");
     const std::string scene = std::to_string(flat_line(shader, "lib/scene.glsl", 12));

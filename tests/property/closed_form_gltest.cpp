@@ -21,7 +21,7 @@ struct Ring {
 
 Ring ring_of(int side, Point centre, Quality quality, double from = 40, double to = 60) {
     constexpr double kRadius = 10;
-    Scene scene = with(canvas(side, side), {shape(Circle{centre, kRadius}, Colour(1))});
+    Scene scene = with(rc_canvas(side, side), {shape(Circle{centre, kRadius}, Colour(1))});
     scene.render.quality = quality;
     const ImageF picture = render_linear(scene);
     Ring ring;

@@ -23,7 +23,7 @@ Scene of_everything(int width, int height, const std::vector<Colour>& lamps) {
     const auto lamp = [&](std::size_t i) { return i < lamps.size() ? lamps[i] : Colour(0); };
     const double w = width;
     const double h = height;
-    return with(canvas(width, height),
+    return with(rc_canvas(width, height),
                 {shape(Circle{{0.21 * w, 0.33 * h}, 0.07 * h}, lamp(0)), shape(Ellipse{{0.71 * w, 0.71 * h}, {0.11 * h, 0.06 * h}, 30}, lamp(1)),
                  shape(Rect{{0.52 * w, 0.44 * h}, {0.03 * w, 0.4 * h}, 12, 0}), shape(Line{{0.3 * w, 0.8 * h}, {0.45 * w, 0.9 * h}, 2.1}, lamp(2)),
                  shape(Polyline{{{0.8 * w, 0.1 * h}, {0.9 * w, 0.2 * h}, {0.78 * w, 0.3 * h}}, 1.7, false}),
@@ -32,7 +32,7 @@ Scene of_everything(int width, int height, const std::vector<Colour>& lamps) {
 
 TEST(Nothing, AnEmptySceneIsBlack) {
     for (const Quality quality : kQualities) {
-        Scene scene = canvas(33, 21);
+        Scene scene = rc_canvas(33, 21);
         scene.render.quality = quality;
         EXPECT_EQ(largest(render_linear(scene)), 0);
         for (const std::uint8_t code : render_display(scene).data) EXPECT_EQ(code, 0);
@@ -63,7 +63,7 @@ TEST(UniformSky, IsExactlyItselfAtAnySizeQualityAndMargin) {
     for (const auto& [width, height] : {std::pair(1, 1), std::pair(2, 3), std::pair(7, 5), std::pair(64, 64), std::pair(101, 37), std::pair(1, 90)})
         for (const Quality quality : kQualities)
             for (const double margin : {0.0, 0.37, 25.0}) {
-                Scene scene = canvas(width, height);
+                Scene scene = rc_canvas(width, height);
                 scene.sky.radiance = sky;
                 scene.render.quality = quality;
                 scene.canvas.margin = margin;
@@ -87,7 +87,7 @@ TEST(UniformSky, InAFurnaceEveryPixelHasIt) {
 }
 
 TEST(GradientSky, AnEmptySceneHasItsMean) {
-    Scene scene = canvas(61, 34);
+    Scene scene = rc_canvas(61, 34);
     scene.sky.gradient = {{20, {1, 0, 0}}, {100, {0, 2, 0}}, {100, {5, 5, 5}}, {230, {0, 0, 1}}};
     // Trapezoids between 20, 100, 230 and 380 degrees.
     const Colour mean = (80.0 * Colour(0.5, 1, 0) + 130.0 * Colour(2.5, 2.5, 3) + 150.0 * Colour(0.5, 0, 0.5)) / 360.0;
@@ -100,7 +100,7 @@ TEST(GradientSky, AnEmptySceneHasItsMean) {
 
 TEST(GradientSky, AWallHidesTheSideBehindIt) {
     // A wall left of everything (the sky there is at 180 degrees) leaves only the sky of the right half.
-    Scene scene = with(canvas(40, 40), {shape(Rect{{1, 20}, {1.5, 500}, 0, 0})});
+    Scene scene = with(rc_canvas(40, 40), {shape(Rect{{1, 20}, {1.5, 500}, 0, 0})});
     scene.sky.gradient = {{90, {0, 1, 0}}, {90, {1, 0, 0}}, {270, {1, 0, 0}}, {270, {0, 1, 0}}};  // red on the left
     const ImageF picture = render_linear(scene);
     // 1.75 px from the wall and 20 from the canvas' ends, a little of the left is seen past the wall's ends.
@@ -153,7 +153,7 @@ TEST(Channels, KeepApart) {
 
 TEST(Occluders, NeverBrightenTheMean) {
     Numbers numbers(11);
-    Scene scene = with(canvas(72, 56), {shape(Circle{{20.3, 21.4}, 5}, {1, 2, 3})});
+    Scene scene = with(rc_canvas(72, 56), {shape(Circle{{20.3, 21.4}, 5}, {1, 2, 3})});
     scene.sky.radiance = Colour(0.1);
     double before = mean(render_linear(scene));
     for (int i = 0; i < 10; ++i) {
@@ -178,7 +178,7 @@ TEST(ClosedBox, KeepsItsLight) {
     for (const Leak& leak : {Leak{1, Quality::draft, 6e-3, 0.05}, Leak{1, Quality::standard, 3e-3, 0.045}, Leak{1, Quality::high, 1e-3, 0.025},
                              Leak{2, Quality::draft, 4e-3, 0.025}, Leak{2, Quality::standard, 1.5e-3, 0.02}, Leak{2, Quality::high, 3e-4, 6e-3},
                              Leak{4, Quality::draft, 1.2e-3, 0.01}, Leak{4, Quality::standard, 3e-4, 5e-3}, Leak{4, Quality::high, 1e-6, 1e-5}}) {
-        Scene scene = with(canvas(96, 96), {shape(Circle{{46.3, 49.2}, 5}, Colour(1)),
+        Scene scene = with(rc_canvas(96, 96), {shape(Circle{{46.3, 49.2}, 5}, Colour(1)),
                                             shape(Polyline{{{26.4, 27.3}, {68.2, 25.1}, {70.6, 66.4}, {24.3, 69.7}}, leak.wall, true})});
         scene.render.quality = leak.quality;
         const ImageF picture = render_linear(scene);

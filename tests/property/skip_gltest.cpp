@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/plan/plan.h"
 #include "tests/support/build_scene.h"
@@ -13,7 +14,8 @@ namespace penumbra::test {
 namespace {
 
 void expect_same_without_skipping(Scene scene, const char* what) {
-    for (const Quality quality : {Quality::draft, Quality::standard}) {
+    for (const auto& [method, quality] : {std::pair("rc", Quality::draft), std::pair("rc", Quality::standard), std::pair("exact", Quality::standard)}) {
+        scene.render.method = method;
         scene.render.quality = quality;
         scene.render.skip = Skip::all;
         const Plan lean = make_plan(scene, {});

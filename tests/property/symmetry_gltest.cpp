@@ -54,7 +54,7 @@ protected:
     double unit() const { return 0.5 * std::min(width(), height()); }
 
     static ImageF rendered(int width, int height, std::vector<Shape> shapes, Quality quality) {
-        Scene scene = canvas(width, height);
+        Scene scene = rc_canvas(width, height);
         scene.sky.radiance = {0.01, 0.02, 0.03};
         scene.shapes = std::move(shapes);
         scene.render.quality = quality;
@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Symmetry, testing::Values(std::pair(64, 64), std
 TEST(Translation, ByTheCoarsestSpacingMovesThePicture) {
     constexpr int kSide = 128;
     const auto rendered = [&](double dx, double dy) {
-        Scene scene = canvas(kSide, kSide);
+        Scene scene = rc_canvas(kSide, kSide);
         Move move;
         move.map = [&](Point p) { return p + Point(dx, dy); };
         scene.shapes = moved_shapes({60.3, 59.1}, 30, move);
@@ -124,7 +124,7 @@ TEST(Translation, ByTheCoarsestSpacingMovesThePicture) {
 
 TEST(Translation, OfViewAndSceneTogetherChangesNoByte) {
     const auto rendered = [](double dx, double dy) {
-        Scene scene = canvas(64, 48);
+        Scene scene = rc_canvas(64, 48);
         Move move;
         move.map = [&](Point p) { return p + Point(dx, dy); };
         // Coordinates of a few binary digits, so that the sums are exact.
@@ -138,7 +138,7 @@ TEST(Translation, OfViewAndSceneTogetherChangesNoByte) {
     EXPECT_GT(mean(at_origin), 0.05);
     // Shapes whose coordinates are no binary fractions lose the last digit of a double far away: 1e-10 of a pixel.
     expect_same_but_for_grazing(at_origin, rendered(1 << 20, -(1 << 20)), "view and scene moved");
-    Scene near = with(canvas(64, 48), {shape(Circle{{24.25, 20.5}, 4.5}, Colour(1)), shape(Rect{{40.5, 22.75}, {3, 20}, 0, 0})});
+    Scene near = with(rc_canvas(64, 48), {shape(Circle{{24.25, 20.5}, 4.5}, Colour(1)), shape(Rect{{40.5, 22.75}, {3, 20}, 0, 0})});
     Scene far = near;
     far.canvas.view = ViewRect{double(1 << 20), -double(1 << 20), 64, 48};
     std::get<Circle>(far.shapes[0].geometry).center += Point(1 << 20, -(1 << 20));
@@ -148,12 +148,12 @@ TEST(Translation, OfViewAndSceneTogetherChangesNoByte) {
 
 TEST(Scale, ASceneTenTimesAsLargeGivesTheSameBytes) {
     for (const double scale : {10.0, 0.125}) {
-        Scene plain = canvas(64, 48);
+        Scene plain = rc_canvas(64, 48);
         plain.shapes = moved_shapes({32.25, 24.5}, 20, {});
         Move move;
         move.scale = scale;
         move.map = [&](Point p) { return scale * p; };
-        Scene scaled = canvas(64, 48);
+        Scene scaled = rc_canvas(64, 48);
         scaled.shapes = moved_shapes({32.25, 24.5}, 20, move);
         scaled.canvas.view = ViewRect{0, 0, 64 * scale, 48 * scale};
         EXPECT_GT(mean(render_linear(plain)), 0.05);

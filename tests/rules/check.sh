@@ -105,8 +105,9 @@ rule_public_headers_are_clean() {
 rule_layers() {
     files "$cpp" core/scene | includes | search_include 'core/[a-rt-z_]|core/s[a-bd-z]|glsl/'
     files "$cpp" core/image | includes | search_include 'core/(plan|gl|passes|reference|renderer)'
-    files "$cpp" core/plan | includes | search_include 'core/(gl|passes|reference|renderer)'
-    files "$cpp" core/reference core/compare | includes | search_include 'core/(gl|passes|renderer)'
+    # Of the exact solver the plan knows the scene's outline, what a point sees of it, and the sky: not the light.
+    files "$cpp" core/plan | includes | search_include 'core/(gl|passes|renderer)|core/reference/(solver|radiosity|delta)'
+    files "$cpp" core/reference core/compare | includes | search_include 'core/(gl|passes|plan|renderer)'
     files "$cpp" core/gl | includes | search_include 'core/(passes|reference|renderer)'
     files "$cpp" core/passes | includes | search_include 'core/(reference|renderer)'
     files "$cpp" server/json | includes | search_include 'server/(http|cli)/'
@@ -136,10 +137,64 @@ rule_glsl_text_in_glsl() {
         search '#version|\<gl_(GlobalInvocationID|LocalInvocationID|WorkGroupID)\>|\<layout *\( *(std140|std430|binding|location|local_size|shared|packed|row_major|r8|r16|r32|rg|rgba)'
 }
 
-# Scene data and intermediate results are read through textures: storage blocks are for writing only.
+# reads_in_loops: from files named on stdin, the lines where a loop (its head or its body) touches a member of a storage block
+# that is not for writing only. Atomic operations pass: they are how invocations claim room.
+reads_in_loops() {
+    code | awk '
+        {
+            at = index($0, ":"); file = substr($0, 1, at - 1); rest = substr($0, at + 1); at = index(rest, ":")
+            if (file != last) { if (last != "") scan(); text = ""; count = 0; last = file }
+            line[++count] = substr(rest, 1, at - 1); start[count] = length(text) + 1; text = text substr(rest, at + 1) "\n"
+        }
+        END { if (last != "") scan() }
+        function line_of(place,   i) { for (i = count; i > 1 && start[i] > place; --i); return line[i] }
+        # Where the loop that begins at `place` ends.
+        function end_of(place,   depth, c) {
+            for (depth = 0; place <= length(text); ++place) {
+                c = substr(text, place, 1)
+                if (c == "{" || c == "(") ++depth
+                if (c == "}" || c == ")") --depth
+                if (depth < 0 || (depth == 0 && (c == ";" || c == "}"))) break
+            }
+            return place
+        }
+        function scan(   names, rest, block, part, n, i, place, head) {
+            split("", names)
+            rest = text
+            while (match(rest, /(^|[^A-Za-z0-9_])buffer[ \t\n]+[A-Za-z_0-9]*[ \t\n]*\{[^}]*\}/)) {
+                block = substr(rest, 1, RSTART + RLENGTH - 1); rest = substr(rest, RSTART + RLENGTH)
+                n = split(block, part, ";")  # the last statement before the brace says of what kind the block is
+                block = substr(block, RSTART)
+                for (i = 1; i <= n && part[i] !~ /(^|[^A-Za-z0-9_])buffer[ \t\n]/; ++i);
+                if (part[i] ~ /[^A-Za-z0-9_]writeonly[^A-Za-z0-9_]/) continue
+                sub(/^[^{]*\{/, "", block)
+                n = split(block, part, ";")
+                for (i = 1; i < n; ++i) {
+                    sub(/[ \t\n]*(\[.*)?[ \t\n]*$/, "", part[i]); sub(/^.*[^A-Za-z_0-9]/, "", part[i])
+                    if (part[i] != "") names[part[i]] = 1
+                }
+            }
+            for (place = 1; match(substr(text, place), /(^|[^A-Za-z0-9_])(for|while|do)[^A-Za-z0-9_]/); place = head + 2) {
+                head = place + RSTART - 1
+                for (n in names) look(n, head, substr(text, head, end_of(head + 1) - head + 1))
+            }
+        }
+        function look(name, base, body,   from, at) {
+            for (from = 1; match(substr(body, from), "[^A-Za-z0-9_]" name "[^A-Za-z0-9_]"); from = at + 1) {
+                at = from + RSTART
+                if (substr(body, 1, at - 1) !~ /atomic[A-Za-z]+[ \t\n]*\([ \t\n]*$/)
+                    print last ":" line_of(base + at - 1) ": " name " is read in a loop"
+            }
+        }'
+}
+
+# Scene data and intermediate results are read through textures. Storage blocks are for writing only, but for counters: plain
+# numbers by which invocations claim room, and which no loop reads.
 rule_no_storage_buffer_reads() {
-    files "$shaders" glsl | code | search '\<buffer +[A-Za-z_]+|\<buffer *\{|\<buffer *$' | grep -vE '\<writeonly\>' || true
+    files "$shaders" glsl | code | search '\<buffer +[A-Za-z_]+|\<buffer *\{|\<buffer *$' | grep -vE '\<writeonly\>' |
+        grep -vE '\<buffer +[A-Za-z_]*Counters *\{ *uint [a-z_]+\[\]; *\};' || true
     files "$shaders" glsl | code | search '\<readonly\>[^;{]*\<buffer\>|\<buffer\>[^;{]*\<readonly\>'
+    files "$shaders" glsl | reads_in_loops
 }
 
 # A file that one can read in one go.

@@ -37,6 +37,20 @@ layout(std430, binding = 0) writeonly buffer Out { float out_values[]; };
 layout(binding = 1) uniform samplerBuffer records;
 void main() {}
 END
+    # Counters: read outside of loops, counted in them by atomic operations.
+    cat >"$root/glsl/count.comp" <<'END'
+#version 430 core
+layout(std430, binding = 0) writeonly buffer Jobs { uint out_jobs[]; };
+layout(std430, binding = 1) buffer Counters { uint counters[]; };
+void main() {
+    uint count = counters[3];  // for (;;) counters[0] is only mentioned here
+    for (uint i = 0u; i < count; ++i) out_jobs[i] = i;
+    for (uint i = 0u; i < count; ++i) {
+        if (i > 2u) { atomicAdd(counters[1], 1u); }
+    }
+    counters[2] = count;
+}
+END
 }
 
 # plant RULE FILE TEXT: FILE gains TEXT, in an otherwise clean tree; RULE must name FILE.
@@ -96,7 +110,9 @@ plant layers core/scene/x.cpp '#include "core/plan/plan.h"'
 plant layers core/scene/x.cpp '#include "core/renderer.h"'
 plant layers core/image/x.cpp '#include "core/passes/pass.h"'
 plant layers core/plan/x.cpp '#include "core/reference/solver.h"'
+plant layers core/plan/x.cpp '#include "core/reference/radiosity.h"'
 plant layers core/reference/x.cpp '#include "core/renderer.h"'
+plant layers core/reference/x.cpp '#include "core/plan/plan.h"'
 plant layers core/gl/x.cpp '#include "core/passes/pass.h"'
 plant layers core/passes/x.cpp '#include "core/renderer.h"'
 plant layers server/json/x.cpp '#include "server/http/problem.h"'
@@ -125,6 +141,15 @@ plant no_storage_buffer_reads glsl/x.comp 'layout(std430, binding = 0) readonly 
 plant no_storage_buffer_reads glsl/x.comp 'layout(std430, binding = 0) buffer InOut { float v[]; };'
 plant no_storage_buffer_reads glsl/lib/x.glsl 'layout(std430) restrict readonly buffer In\n{ float v[]; };'
 plant no_storage_buffer_reads glsl/x.h 'buffer In { float v[]; };'
+plant no_storage_buffer_reads glsl/x.comp 'buffer Counters { vec4 counters[]; };'
+plant no_storage_buffer_reads glsl/x.comp 'buffer Counters { uint counters[]; float more[]; };'
+counters='layout(std430) buffer Counters { uint counters[]; };\nvoid main() {\n'
+plant no_storage_buffer_reads glsl/x.comp "$counters for (int i = 0; i < 9; ++i) x += counters[i];\n}"
+plant no_storage_buffer_reads glsl/x.comp "$counters for (int i = 0; i < 9; ++i) {\n  if (i > 3) {\n x += counters[i];\n }\n }\n}"
+plant no_storage_buffer_reads glsl/x.comp "$counters for (uint i = 0u; i < counters[0]; ++i) { ++x; }\n}"
+plant no_storage_buffer_reads glsl/x.comp "$counters while (x < 3) { while (true) { ++y; }\n x = int(counters[x]); }\n}"
+plant no_storage_buffer_reads glsl/x.comp "$counters do { x = int(counters[x]); } while (x < 3);\n}"
+plant no_storage_buffer_reads glsl/x.comp "$counters do { ++x; } while (x < counters[0]);\n}"
 
 long=$(for ((i = 0; i < 501; ++i)); do printf '// %d\\n' "$i"; done)
 plant at_most_500_lines core/scene/x.cpp "$long"

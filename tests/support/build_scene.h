@@ -21,6 +21,13 @@ inline Scene canvas(int width, int height, const char* format = "pfm") {
     return scene;
 }
 
+// The cascades whose errors the tests of light, symmetry and closed forms bound; other methods have tests of their own.
+inline Scene rc_canvas(int width, int height) {
+    Scene scene = canvas(width, height);
+    scene.render.method = "rc";
+    return scene;
+}
+
 inline Shape shape(Geometry geometry, Colour emission = Colour(0)) {
     Shape result;
     result.geometry = std::move(geometry);

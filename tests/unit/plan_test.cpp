@@ -246,6 +246,12 @@ std::string skipped(const Plan& plan, const std::string& what) {
 
 TEST(MakePlan, SaysWhatItSkipsAndWhy) {
     Scene scene = scene_of(64, 48);
+    scene.render.method = "exact";
+    const Plan unlit = make_plan(scene, {});
+    EXPECT_NE(skipped(unlit, "points").find("nothing emits"), std::string::npos);
+    for (const SkippedWork& work : unlit.skipped) EXPECT_GT(work.saved, 0) << work.what;
+
+    scene.render.method = "rc";
     const Plan empty = make_plan(scene, {});
     EXPECT_NE(skipped(empty, "distance pass").find("no shapes"), std::string::npos);
     EXPECT_NE(skipped(empty, "jump flooding").find("no bitmaps"), std::string::npos);
@@ -272,6 +278,7 @@ TEST(MakePlan, ABitmapIsFloodedAndItsLightCounts) {
     image->width = image->height = 1;
     image->rgba = {255, 255, 255, 255};
     Scene scene = scene_of(64, 48);
+    scene.render.method = "rc";
     scene.shapes.push_back(shape_of(Bitmap{image, {1, 1}, {4, 4}, 1, 0.5, false}));
     EXPECT_EQ(make_plan(scene, {}).jump_steps, plan_jumps({64, 48}));
     EXPECT_FALSE(make_plan(scene, {}).cascades.empty());
@@ -280,18 +287,26 @@ TEST(MakePlan, ABitmapIsFloodedAndItsLightCounts) {
 }
 
 TEST(MakePlan, LargeCanvasesUseHalfFloatsWithEmissionScaled) {
-    Scene scene = scene_of(4096, 4096);
-    scene.sky.radiance = Colour(1, 40, 3);
-    EXPECT_FALSE(make_plan(scene, {}).half_floats);
-    EXPECT_EQ(make_plan(scene, {}).radiance_scale, 1);
-    scene.canvas.width = scene.canvas.height = 8192;
-    const Plan large = make_plan(scene, {});
-    EXPECT_TRUE(large.half_floats);
-    EXPECT_EQ(large.radiance_scale, 40);
+    for (const char* method : {"rc", "exact"}) {
+        Scene scene = scene_of(4096, 4096);
+        scene.render.method = method;
+        scene.sky.radiance = Colour(1, 40, 3);
+        scene.shapes.push_back(shape_of(Circle{{500, 500}, 20}, Colour(10, 20, 0)));
+        EXPECT_FALSE(make_plan(scene, {}).half_floats);
+        EXPECT_EQ(make_plan(scene, {}).radiance_scale, 1);
+        scene.canvas.width = scene.canvas.height = 8192;
+        const Plan large = make_plan(scene, {});
+        EXPECT_TRUE(large.half_floats);
+        EXPECT_EQ(large.radiance_scale, 40);
+        if (large.exact.used) {
+            EXPECT_EQ(glm::vec3(large.exact.outline.lights_of.at(0)), glm::vec3(0.25f, 0.5f, 0));
+        }
+    }
 }
 
 TEST(MakePlan, RefusesWhatTheDeviceCannotHold) {
     Scene scene = scene_of(8192, 8192);
+    scene.render.method = "rc";
     scene.sky.radiance = Colour(1);
     EXPECT_NO_THROW(make_plan(scene, {}));
     scene.render.quality = Quality::high;
