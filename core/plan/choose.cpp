@@ -9,6 +9,8 @@ namespace {
 
 // Where `exact` takes as long as `rc` of the same quality, or up to twice that at a hundredth of its error.
 constexpr double kMostCost = 25'000;
+// The same for `high`, whose cascades cost four times as much and more.
+constexpr double kMostCostHigh = 100'000;
 
 }  // namespace
 
@@ -16,12 +18,13 @@ double exact_cost(const PackedOutline& outline) { return outline.mean_intervals 
 
 std::size_t most_surveyed_pieces() { return 20'000; }
 
-MethodChoice choose_method(const PackedOutline& outline) {
+MethodChoice choose_method(const PackedOutline& outline, Quality quality) {
     if (!outline.fits) return {"hrc", "more than " + std::to_string(most_surveyed_pieces()) + " pieces of outline"};
     std::ostringstream seen;
     seen << outline.pieces << " pieces of outline, of which a point tells " << std::round(outline.mean_intervals)
          << " intervals of direction apart";
-    if (exact_cost(outline) <= kMostCost) return {"exact", seen.str() + ": solved sooner than sampled"};
+    const double most = quality == Quality::high ? kMostCostHigh : kMostCost;
+    if (exact_cost(outline) <= most) return {"exact", seen.str() + ": solved sooner than sampled"};
     return {"hrc", seen.str() + ": sampled sooner than solved"};
 }
 

@@ -19,8 +19,8 @@ struct MethodChoice {
 // apart times the pieces of outline (measured over the public scenes; right within a factor of two).
 double exact_cost(const PackedOutline& outline);
 
-// `outline` with its survey.
-MethodChoice choose_method(const PackedOutline& outline);
+// `outline` with its survey. For `high` a solved picture may cost more, since sampled ones do.
+MethodChoice choose_method(const PackedOutline& outline, Quality quality = Quality::standard);
 
 // The most pieces of outline for which `auto` looks closer.
 std::size_t most_surveyed_pieces();

@@ -207,7 +207,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     PackedOutline outline;
     if (plan.method == "auto") {
         outline = pack_outline(scene, 1.0, true, most_surveyed_pieces());
-        const MethodChoice choice = not_exact.empty() ? choose_method(outline) : MethodChoice{"hrc", not_exact};
+        const MethodChoice choice = not_exact.empty() ? choose_method(outline, scene.render.quality) : MethodChoice{"hrc", not_exact};
         plan.method = choice.method;
         plan.method_reason = choice.reason;
         if (plan.method == "hrc" && !hrc_fits(scene, plan.canvas, limits)) {

@@ -36,7 +36,7 @@ inline Shape shape(Geometry geometry, Colour emission = Colour(0)) {
 }
 
 inline Scene with(Scene scene, std::initializer_list<Shape> shapes) {
-    scene.shapes.insert(scene.shapes.end(), shapes.begin(), shapes.end());
+    for (const Shape& one : shapes) scene.shapes.push_back(one);  // insert() makes GCC 12 warn wrongly
     return scene;
 }
 
