@@ -12,12 +12,12 @@ struct PassStats {
     std::string name;      // "distance", "cascade 3", "compose", "read"
     double gpu_ms = 0;     // device time by timer queries; 0 for passes without device work
     double wall_ms = 0;    // host time, the wait for the device included
-    double cpu_ms = 0;     // processor time of all threads of the process meanwhile
     int width = 0;         // extent in invocations
     int height = 0;
     std::uint64_t dispatches = 0;
     std::uint64_t rays = 0;  // rays (intervals) traced
     std::uint64_t bytes = 0; // what it writes
+    double cpu_ms = 0;     // processor time of all threads of the process meanwhile
 };
 
 struct SkippedWork {
