@@ -237,20 +237,12 @@ void change(bvec4 changed, float sector_angle) {
 
 int sectors_done(ivec2 point) { return params.continues != 0 ? int(imageLoad(slope_y_image, point).a) : 0; }
 
+// What a point has gathered: sums while it is not done, means then.
 void store(ivec2 point, int done, vec3 sum, uint seen, vec4 x, vec3 y) {
-    vec4 value = vec4(sum / kTwoPi, float(seen & 0xffffffu));
-    x /= kTwoPi;
-    y /= kTwoPi;
-    if (params.continues != 0) {
-        vec4 before = imageLoad(value_image, point);
-        value.a = float((seen + uint(before.a)) & 0xffffffu);
-        value.rgb += before.rgb;
-        x += imageLoad(slope_x_image, point);
-        y += imageLoad(slope_y_image, point).rgb;
-    }
-    imageStore(value_image, point, value);
-    imageStore(slope_x_image, point, x);
-    imageStore(slope_y_image, point, vec4(y, float(done)));
+    float whole = done < params.sectors ? 1.0 : kTwoPi;
+    imageStore(value_image, point, vec4(sum / whole, float(seen & 0xffffffu)));
+    imageStore(slope_x_image, point, x / whole);
+    imageStore(slope_y_image, point, vec4(y / whole, float(done)));
 }
 
 ivec2 local_point(int first, int index, int count) {
@@ -292,6 +284,23 @@ void solve(int tile_index, int first, int count) {
     slope_y_b = vec4(0.0);
     third = vec4(0.0);
     signature = uvec4(0u);
+    if (params.continues != 0) {
+        // The sums go on where they were: in how many dispatches they are made shows in no digit.
+        vec4 v0 = imageLoad(value_image, p0), v1 = imageLoad(value_image, p1), v2 = imageLoad(value_image, p2), v3 = imageLoad(value_image, p3);
+        sum_r = vec4(v0.r, v1.r, v2.r, v3.r);
+        sum_g = vec4(v0.g, v1.g, v2.g, v3.g);
+        sum_b = vec4(v0.b, v1.b, v2.b, v3.b);
+        signature = uvec4(v0.a, v1.a, v2.a, v3.a);
+        v0 = imageLoad(slope_x_image, p0), v1 = imageLoad(slope_x_image, p1), v2 = imageLoad(slope_x_image, p2), v3 = imageLoad(slope_x_image, p3);
+        slope_x_r = vec4(v0.r, v1.r, v2.r, v3.r);
+        slope_x_g = vec4(v0.g, v1.g, v2.g, v3.g);
+        slope_x_b = vec4(v0.b, v1.b, v2.b, v3.b);
+        third = vec4(v0.a, v1.a, v2.a, v3.a);
+        v0 = imageLoad(slope_y_image, p0), v1 = imageLoad(slope_y_image, p1), v2 = imageLoad(slope_y_image, p2), v3 = imageLoad(slope_y_image, p3);
+        slope_y_r = vec4(v0.r, v1.r, v2.r, v3.r);
+        slope_y_g = vec4(v0.g, v1.g, v2.g, v3.g);
+        slope_y_b = vec4(v0.b, v1.b, v2.b, v3.b);
+    }
     int budget = kBudget;
     int list = tile_index * params.sectors;
     if (all(solid)) s = params.sectors;
