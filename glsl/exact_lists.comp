@@ -135,7 +135,7 @@ void main() {
 
     // The points of a tile are centres of pixels, the next column and row among them.
     half_tile = 0.5 * float(params.tile_px);
-    vec2 centre = vec2(at.x, row) * float(params.tile_px) + half_tile + 0.5 + vec2(0.0, params.first_row);
+    vec2 centre = vec2(at.x, row) * float(params.tile_px) + half_tile + 0.5 + vec2(params.list_origin);
     axis = texelFetch(sectors, sector).xy;
     vec2 side = vec2(-axis.y, axis.x) * params.tan_half;
     d0 = normalize(axis - side);

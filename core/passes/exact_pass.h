@@ -14,6 +14,7 @@
 #include "core/gl/storage_buffer.h"
 #include "core/passes/frame.h"
 #include "core/plan/plan.h"
+#include "glsl/exact.h"
 
 namespace penumbra {
 
@@ -41,12 +42,17 @@ private:
     struct Band;
     PassWork make_lists(const Plan& plan, Band& band);
     PassWork solve(const Plan& plan, const DistanceField& field, Band& band, int level);
+    // Lets the light bounce between surfaces: afterwards `elements_` tells what each shines with.
+    void bounce(const Plan& plan, const PassSettings& settings, const Record& record, Band& band);
+    PassWork reflect(const Plan& plan, Band& band, bool first);
+    void run_solver(gl::ComputeProgram& program, glsl::ExactParams params, Band& band, PassWork& work,
+                    const std::function<void(const glsl::ExactParams&)>& dispatch);
 
     // A program for what a scene has, compiled when first asked for.
     struct Needs {
         bool arcs, ellipses;
         int sky;
-        bool slopes;
+        bool slopes, surfaces, nodes;
         auto operator<=>(const Needs&) const = default;
     };
     gl::ComputeProgram& lists_for(const ExactPlan& exact);
@@ -59,9 +65,11 @@ private:
     gl::ComputeProgram gather_;
     gl::ComputeProgram mean_;
     gl::ComputeProgram fill_;
+    gl::ComputeProgram reflect_;
     gl::StorageBuffer coarse_heads_, coarse_entries_, coarse_lights_;
     gl::StorageBuffer heads_, entries_, lights_;
     gl::StorageBuffer points_, jobs_, counters_, means_;
+    gl::StorageBuffer elements_, change_;
     std::size_t points_solved_ = 0;
 };
 

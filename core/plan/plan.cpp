@@ -55,6 +55,15 @@ ReferencePlan plan_reference(const Scene& scene, const DeviceLimits& limits) {
     return plan;
 }
 
+// Whether light bounces anywhere.
+bool reflects(const Scene& scene) {
+    if (scene.render.bounces == 0) return false;
+    return std::any_of(scene.shapes.begin(), scene.shapes.end(), [](const Shape& shape) {
+        const auto* bitmap = std::get_if<Bitmap>(&shape.geometry);
+        return bitmap != nullptr ? bitmap->as_albedo : shape.albedo != Colour(0);
+    });
+}
+
 double brightest_emission(const Shape& shape) {
     if (const auto* bitmap = std::get_if<Bitmap>(&shape.geometry)) return bitmap->as_albedo ? 0.0 : bitmap->emission_scale;
     return std::max({shape.emission.r, shape.emission.g, shape.emission.b});
@@ -204,10 +213,16 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     plan.grid = plan_grid(scene.canvas);
     plan.method = scene.render.method;
     plan.method_reason = "asked for";
+    const bool reflecting = reflects(scene);
     PackedOutline outline;
     if (plan.method == "auto") {
-        outline = pack_outline(scene, 1.0, true, most_surveyed_pieces());
-        const MethodChoice choice = not_exact.empty() ? choose_method(outline, scene.render.quality) : MethodChoice{"hrc", not_exact};
+        outline = pack_outline(scene, 1.0, true, most_surveyed_pieces(), reflecting);
+        if (reflecting && !(outline.fits && not_exact.empty()))
+            throw DeviceError("The scene is too dense for bounces, which only the method 'exact' has: " +
+                              (not_exact.empty() ? "its outline has more than " + std::to_string(most_surveyed_pieces()) + " pieces." : not_exact));
+        const MethodChoice choice = !not_exact.empty() ? MethodChoice{"hrc", not_exact}
+                                    : reflecting       ? MethodChoice{"exact", "surfaces reflect"}
+                                                       : choose_method(outline, scene.render.quality);
         plan.method = choice.method;
         plan.method_reason = choice.reason;
         if (plan.method == "hrc" && !hrc_fits(scene, plan.canvas, limits)) {
@@ -215,7 +230,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
             plan.method_reason += "; too large a picture for hrc on this device";
         }
     } else if (plan.method == "exact") {
-        outline = pack_outline(scene, 1.0, false, kMostPieces);
+        outline = pack_outline(scene, 1.0, false, kMostPieces, reflecting);
         if (!outline.fits)
             throw DeviceError("The method 'exact' cannot take this scene: its outline has more than " +
                               std::to_string(kMostPieces) + " pieces.");
@@ -265,6 +280,8 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         plan.hrc = plan_hrc(plan.canvas, scene.canvas.margin / scene.canvas.pixel_size(), hrc_settings(scene.render.quality));
     else
         plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
+    plan.exact.bounces = exact && reflecting ? scene.render.bounces : 0;
+    if (scene.render.bounces > 0 && !reflecting) leave_out("bounces", "no surface reflects", double(scene.render.bounces));
     if (peak <= 0 && skip) {
         const double levels = holographic ? double(plan.hrc.quadrants.front().levels.size()) : double(plan.cascades.size());
         const double rays = brute_force ? plan.reference.rays : exact ? 1.0 : (plan.bilinear_fix ? 16.0 : 4.0) * levels;
@@ -286,6 +303,8 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     if (plan.half_floats) plan.radiance_scale = peak > 0 ? peak : 1.0;
     for (glm::vec4& light : plan.exact.outline.lights_of)
         light = glm::vec4(glm::vec3(light) / static_cast<float>(plan.radiance_scale), light.a);
+    for (std::size_t i = 0; i < plan.exact.outline.surfaces.materials.size(); i += 2)
+        plan.exact.outline.surfaces.materials[i] /= static_cast<float>(plan.radiance_scale);
     const std::size_t texel = plan.half_floats ? 8 : 16;
     check_size(plan.grid.size, 4, limits, "distance field");
     for (const CascadePlan& c : plan.cascades) check_size(c.texture, texel, limits, "cascade");
