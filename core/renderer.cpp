@@ -15,6 +15,7 @@
 #include "core/gl/timer.h"
 #include "core/passes/cascade_pass.h"
 #include "core/passes/compose_pass.h"
+#include "core/passes/delta_pass.h"
 #include "core/passes/distance_pass.h"
 #include "core/passes/exact_pass.h"
 #include "core/passes/hrc_pass.h"
@@ -147,6 +148,7 @@ struct Renderer::Impl {
           hrc(options.shader_dir),
           reference(options.shader_dir),
           exact(options.shader_dir),
+          delta(options.shader_dir),
           compose(options.shader_dir) {
         const gl::ContextInfo& gl_info = context.info();
         info.kind = gl_info.software ? "cpu" : "gpu";
@@ -188,6 +190,7 @@ struct Renderer::Impl {
     HrcPass hrc;
     ReferencePass reference;
     ExactPass exact;
+    DeltaPass delta;
     ComposePass compose;
     DeviceInfo info;
     DeviceLimits limits;
@@ -266,7 +269,7 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
         record.pass("reference", plan.canvas,
                     [&] { return reference.run(plan, scene.sky, buffers, field, settings, radiance); });
     if (plan.exact.used)
-        exact.run(plan, scene.sky, field, settings,
+        exact.run(plan, scene.sky, field, settings, delta,
                   [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, radiance);
     if (plan.hrc.active()) radiance = render_hrc(plan, field, record);
     if (plan.resolve)
@@ -277,11 +280,14 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
             radiance = std::move(resolved);
             return work;
         });
-    if (!radiance) {
-        // No light at all: one black texel stands for every pixel.
+    gl::Texture2D lights;
+    if (plan.delta.used()) record.pass("lights", plan.canvas, [&] { return delta.pixels(plan, field, settings, lights); });
+    // Where there is no light one black texel stands for every pixel.
+    for (gl::Texture2D* texture : {&radiance, &lights}) {
+        if (*texture) continue;
         const float black[4] = {};
-        radiance = gl::Texture2D(GL_RGBA32F, {1, 1});
-        radiance.fill(GL_RGBA, GL_FLOAT, black);
+        *texture = gl::Texture2D(GL_RGBA32F, {1, 1});
+        texture->fill(GL_RGBA, GL_FLOAT, black);
     }
 
     RenderResult result;
@@ -290,7 +296,7 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
         const int rows = std::min(plan.band_rows, plan.canvas.y - row);
         gl::Texture2D band = settings.take(linear ? GL_RGBA32F : GL_RGBA8, {plan.canvas.x, rows});
         record.pass("compose", {plan.canvas.x, rows},
-                    [&] { return compose.run(plan, scene, linear, radiance, field, settings, row, band); });
+                    [&] { return compose.run(plan, scene, linear, radiance, lights, field, settings, row, band); });
         record.host("read", {plan.canvas.x, rows}, [&] { reader.read(band, row); });
         settings.give(std::move(band));
     }
@@ -299,6 +305,7 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
     settings.give(std::move(field.distance));
     settings.give(std::move(field.material));
     settings.give(std::move(radiance));
+    settings.give(std::move(lights));
 
     RenderStats& stats = result.stats;
     stats.passes = record.finish();

@@ -12,6 +12,7 @@ const int kComposeImageBinding = 0;  // rgba8 (display) or rgba32f (linear)
 const int kComposeRadianceUnit = 6;  // mean radiance, one texel a pixel
 const int kComposeDistanceUnit = 4;
 const int kComposeMaterialUnit = 5;
+const int kComposeLightsUnit = 7;    // what point, spot and directional lights add, or one texel without them
 
 const int kTonemapNone = 0;
 const int kTonemapReinhard = 1;

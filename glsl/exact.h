@@ -71,12 +71,13 @@ const uint kExactTooLong = 0x7fffffffu;  // a list has more entries than its hea
 // curve), angle where it starts, angle that it covers (0: straight).
 // An element's texels: integral of radiance from u = 0 to its start, u there | mean radiance, size in u |
 // change of radiance across it, unused.
-// A node's texels: place, outward normal | element, unused.
+// A node's texels: place, outward normal | element, its extent as a vector, unused.
 // A material's texels: emission, first element | half the albedo, elements as above.
 const int kExactElementTexels = 3;
 const int kExactNodeRow = 1024;       // nodes in a row of the images that they are solved in
 const int kExactMaterialsUnit = 16;
 const int kExactNodeValuesUnit = 17;  // RGBA32F: irradiance by element
+const int kExactNodeLightsUnit = 18;  // RGBA32F: irradiance that lights without a size give, by element
 const int kExactElementsStorage = 0;
 const int kExactChangeStorage = 1;    // uints: most that an element changed by, most that one shines with, as bits of floats
 
@@ -104,7 +105,7 @@ struct ExactParams {
     int first_count;     // of the level, in the counters
     int capacity;        // texels of entries
     int continues;       // goes on where the dispatch before ended
-    int pad4a;
+    float light_scale;   // of what lights without a size give surfaces; 0: there are none
     float tolerance;     // of the interpolation, relative
     int kink_cell;       // cells larger than this are split where what is seen differs
     float floor_share;   // of the mean radiance, added to what the tolerance is relative to

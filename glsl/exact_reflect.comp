@@ -8,11 +8,17 @@ layout(std140, binding = kExactParamsBinding) uniform Params { ExactParams param
 layout(binding = kExactSurfacesUnit) uniform samplerBuffer surfaces;
 layout(binding = kExactMaterialsUnit) uniform samplerBuffer materials;
 layout(binding = kExactNodeValuesUnit) uniform sampler2D irradiance;
+layout(binding = kExactNodeLightsUnit) uniform sampler2D light_irradiance;
 layout(std430, binding = kExactElementsStorage) buffer Elements { vec4 elements[]; };
 layout(std430, binding = kExactChangeStorage) buffer Change { uint change[]; };
 
 vec3 shine(int element, vec3 emission, vec3 half_albedo) {
-    vec3 arriving = params.level == 0 ? vec3(0.0) : texelFetch(irradiance, ivec2(element % kExactNodeRow, element / kExactNodeRow), 0).rgb;
+    ivec2 at = ivec2(element % kExactNodeRow, element / kExactNodeRow);
+    vec3 arriving = vec3(0.0);
+    if (params.level != 0) {
+        arriving = texelFetch(irradiance, at, 0).rgb;
+        if (params.light_scale > 0.0) arriving += params.light_scale * texelFetch(light_irradiance, at, 0).rgb;
+    }
     // What does not reflect has not been asked for its irradiance.
     return emission + mix(vec3(0.0), half_albedo * arriving, greaterThan(half_albedo, vec3(0.0)));
 }

@@ -27,7 +27,8 @@ ComposePass::ComposePass(const std::string& shader_dir)
       linear_("linear.comp", sizeof(glsl::ComposeParams), shader_dir) {}
 
 PassWork ComposePass::run(const Plan& plan, const Scene& scene, bool linear, const gl::Texture2D& radiance,
-                          const DistanceField& field, const PassSettings& settings, int first_row, gl::Texture2D& out) {
+                          const gl::Texture2D& lights, const DistanceField& field, const PassSettings& settings, int first_row,
+                          gl::Texture2D& out) {
     glsl::ComposeParams params{};
     params.extent = plan.canvas;
     params.border = plan.grid.border;
@@ -40,6 +41,7 @@ PassWork ComposePass::run(const Plan& plan, const Scene& scene, bool linear, con
     params.first_row = first_row;
     params.has_shapes = scene.shapes.empty() ? 0 : 1;
     radiance.bind_texture(glsl::kComposeRadianceUnit);
+    lights.bind_texture(glsl::kComposeLightsUnit);
     field.distance.bind_texture(glsl::kComposeDistanceUnit);
     field.material.bind_texture(glsl::kComposeMaterialUnit);
     out.bind_image(glsl::kComposeImageBinding, GL_WRITE_ONLY);

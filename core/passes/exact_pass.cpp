@@ -55,7 +55,7 @@ struct ExactPass::Band {
     glsl::ExactParams params{};
     gl::BufferTexture root_entries, root_lights, sectors, sky;
     gl::BufferTexture surfaces, materials;
-    gl::Texture2D value, slope_x, slope_y, state, leaf;
+    gl::Texture2D value, slope_x, slope_y, state, leaf, lights;
     glm::ivec2 coarse_tiles{0};
     std::array<LevelPoints, kLevels> levels{};
     bool always_finishes = false;
@@ -181,16 +181,15 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
     band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_WRITE);
     field.distance.bind_texture(glsl::kExactDistanceUnit);
     points_.bind_texture(glsl::kExactPointsUnit);
-    run_solver(program, params, band, work, [&](const glsl::ExactParams& p) {
+    run_solver(params, band, work, [&](const glsl::ExactParams& p) {
         program.dispatch_indirect(p, 4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1));
     });
     return work;
 }
 
 // Dispatches until every point is done: one whose loops have spent their iterations goes on in the next.
-void ExactPass::run_solver(gl::ComputeProgram& program, glsl::ExactParams params, Band& band, PassWork& work,
+void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work,
                            const std::function<void(const glsl::ExactParams&)>& dispatch) {
-    (void)program;
     heads_.bind_texture(glsl::kExactHeadsUnit);
     entries_.bind_texture(glsl::kExactEntriesUnit);
     lights_.bind_texture(glsl::kExactLightsUnit);
@@ -226,6 +225,10 @@ PassWork ExactPass::reflect(const Plan& plan, Band& band, bool first) {
     band.surfaces.bind_texture(glsl::kExactSurfacesUnit);
     band.materials.bind_texture(glsl::kExactMaterialsUnit);
     band.value.bind_texture(glsl::kExactNodeValuesUnit);
+    if (band.lights) {
+        band.lights.bind_texture(glsl::kExactNodeLightsUnit);
+        params.light_scale = static_cast<float>(1.0 / plan.radiance_scale);
+    }
     elements_.bind_storage(glsl::kExactElementsStorage);
     change_.bind_storage(glsl::kExactChangeStorage);
     PassWork work;
@@ -234,7 +237,7 @@ PassWork ExactPass::reflect(const Plan& plan, Band& band, bool first) {
     return work;
 }
 
-void ExactPass::bounce(const Plan& plan, const PassSettings& settings, const Record& record, Band& band) {
+void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass& delta, const Record& record, Band& band) {
     const ExactPlan& exact = plan.exact;
     const Surfaces& surfaces = exact.outline.surfaces;
     elements_ = at_least(std::move(elements_), GL_RGBA32F, surfaces.elements * glsl::kExactElementTexels * 16);
@@ -244,6 +247,7 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, const Rec
     band.value = settings.take(GL_RGBA32F, image);
     band.slope_x = settings.take(GL_RGBA32F, image);
     band.slope_y = settings.take(GL_RGBA32F, image);
+    if (plan.delta.used()) band.lights = settings.take(GL_RGBA32F, image);
     const int elements = static_cast<int>(surfaces.elements);
     record("reflect", {elements, 1}, [&] { return reflect(plan, band, true); });
 
@@ -279,11 +283,15 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, const Rec
             // One part's lists serve all bounces.
             if (i == 0 || parts.size() > 1)
                 record("exact lists", {part.tiles.x, part.tiles.y * exact.sectors}, [&] { return make_lists(plan, band); });
-            record("bounce", {static_cast<int>(part.jobs.nodes.size() / 2), 1}, [&] {
+            const int jobs = static_cast<int>(part.jobs.tiles.size());
+            const gl::BufferTexture nodes(GL_RGBA32F, part.jobs.nodes.data(), part.jobs.nodes.size() * 16);
+            jobs_ = at_least(std::move(jobs_), GL_R32UI, part.jobs.tiles.size() * 4);
+            jobs_.write(0, part.jobs.tiles.data(), part.jobs.tiles.size() * 4);
+            if (i == 0 && band.lights)
+                record("lights on surfaces", {4 * jobs, 1},
+                       [&] { return delta.surfaces(plan, {part.origin, part.area, jobs_, nodes, jobs}, band.lights); });
+            record("bounce", {4 * jobs, 1}, [&] {
                 PassWork work;
-                const gl::BufferTexture nodes(GL_RGBA32F, part.jobs.nodes.data(), part.jobs.nodes.size() * 16);
-                jobs_ = at_least(std::move(jobs_), GL_R32UI, part.jobs.tiles.size() * 4);
-                jobs_.write(0, part.jobs.tiles.data(), part.jobs.tiles.size() * 4);
                 const std::vector<std::uint32_t> zero(glsl::kExactCountTiles);
                 counters_.write(0, zero.data(), zero.size() * 4);
                 band.value.bind_image(glsl::kExactValueImage, GL_READ_WRITE);
@@ -291,9 +299,9 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, const Rec
                 band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_WRITE);
                 nodes.bind_texture(glsl::kExactNodesUnit);
                 glsl::ExactParams params = band.params;
-                params.jobs = static_cast<int>(part.jobs.tiles.size());
+                params.jobs = jobs;
                 params.extent = {params.jobs, 1};
-                run_solver(program, params, band, work, [&](const glsl::ExactParams& p) { program.dispatch(p, p.extent); });
+                run_solver(params, band, work, [&](const glsl::ExactParams& p) { program.dispatch(p, p.extent); });
                 std::uint32_t spent = 0;
                 counters_.read(4 * glsl::kExactCountSpent, &spent, sizeof(spent));
                 if (spent != 0)
@@ -314,10 +322,11 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, const Rec
     settings.give(std::move(band.value));
     settings.give(std::move(band.slope_x));
     settings.give(std::move(band.slope_y));
+    settings.give(std::move(band.lights));
 }
 
 void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings,
-                    const Record& record, gl::Texture2D& out) {
+                    DeltaPass& delta, const Record& record, gl::Texture2D& out) {
     const ExactPlan& exact = plan.exact;
     const PackedOutline& outline = exact.outline;
     Band band;
@@ -345,7 +354,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
     params.root_counts = {outline.counts[0], outline.counts[1], outline.counts[2], outline.counts[3]};
     params.root_lights = {outline.lights[0], outline.lights[1], outline.lights[2], outline.lights[3]};
 
-    if (exact.bounces > 0) bounce(plan, settings, record, band);
+    if (exact.bounces > 0) bounce(plan, settings, delta, record, band);
     for (int row = 0; row < plan.canvas.y; row += exact.band_rows) {
         band.area = {plan.canvas.x, std::min(exact.band_rows, plan.canvas.y - row)};
         params.first_row = row;

@@ -12,6 +12,7 @@
 #include "core/device_error.h"
 #include "core/gl/program.h"
 #include "core/gl/storage_buffer.h"
+#include "core/passes/delta_pass.h"
 #include "core/passes/frame.h"
 #include "core/plan/plan.h"
 #include "glsl/exact.h"
@@ -33,7 +34,8 @@ public:
 
     // `record(name, extent, run)` times each step: lists, points, cells, fill.
     using Record = std::function<void(const char* name, glm::ivec2 extent, const std::function<PassWork()>& run)>;
-    void run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings,
+    // `delta` lights surfaces where light bounces.
+    void run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings, DeltaPass& delta,
              const Record& record, gl::Texture2D& out);
 
     std::size_t bytes() const;
@@ -43,9 +45,9 @@ private:
     PassWork make_lists(const Plan& plan, Band& band);
     PassWork solve(const Plan& plan, const DistanceField& field, Band& band, int level);
     // Lets the light bounce between surfaces: afterwards `elements_` tells what each shines with.
-    void bounce(const Plan& plan, const PassSettings& settings, const Record& record, Band& band);
+    void bounce(const Plan& plan, const PassSettings& settings, DeltaPass& delta, const Record& record, Band& band);
     PassWork reflect(const Plan& plan, Band& band, bool first);
-    void run_solver(gl::ComputeProgram& program, glsl::ExactParams params, Band& band, PassWork& work,
+    void run_solver(glsl::ExactParams params, Band& band, PassWork& work,
                     const std::function<void(const glsl::ExactParams&)>& dispatch);
 
     // A program for what a scene has, compiled when first asked for.

@@ -155,7 +155,10 @@ public:
             // Off the surface by some units in the last place, for a surface does not shade itself.
             const double off = std::max(kOff, 8 * 6e-8 * std::max(std::abs(at.x), std::abs(at.y)));
             const glm::dvec2 place = at + off * normal;
-            made_.nodes.push_back({glm::vec4(glm::vec2(place), glm::vec2(normal)), static_cast<std::uint32_t>(made_.elements) + static_cast<std::uint32_t>(i)});
+            const auto end_of = [&](int element) {
+                return frame_.point(piece.at(piece.t0 + element_start(element, count, course.whole) * (piece.t1 - piece.t0)));
+            };
+            made_.nodes.push_back({glm::vec4(glm::vec2(place), glm::vec2(normal)), glm::vec2(end_of(i + 1) - end_of(i)), static_cast<std::uint32_t>(made_.elements) + static_cast<std::uint32_t>(i)});
         }
         made_.elements += static_cast<std::size_t>(count) + 1;
     }

@@ -282,13 +282,22 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
     plan.exact.bounces = exact && reflecting ? scene.render.bounces : 0;
     if (scene.render.bounces > 0 && !reflecting) leave_out("bounces", "no surface reflects", double(scene.render.bounces));
-    if (peak <= 0 && skip) {
+    plan.delta.lights = pack_lights(scene);
+    if (plan.delta.used() && !exact) {
+        plan.delta.outline = pack_outline(scene, 1.0, false, kMostPieces);
+        if (!plan.delta.outline.fits)
+            throw DeviceError("The shadows of point, spot and directional lights need the scene's outline, which has more than " +
+                              std::to_string(kMostPieces) + " pieces.");
+    }
+    // Lights without a size are added for themselves, but what they light may light other things.
+    if (peak <= 0 && skip && !(plan.exact.bounces > 0 && plan.delta.used())) {
         const double levels = holographic ? double(plan.hrc.quadrants.front().levels.size()) : double(plan.cascades.size());
         const double rays = brute_force ? plan.reference.rays : exact ? 1.0 : (plan.bilinear_fix ? 16.0 : 4.0) * levels;
         leave_out(brute_force ? "rays" : exact ? "points" : holographic ? "ray pieces" : "cascades", "nothing emits light",
                   pixels * rays);
         plan.cascades.clear();
         plan.reference = {};
+        if (plan.delta.used() && exact) plan.delta.outline = std::move(plan.exact.outline);
         plan.exact = {};
         plan.hrc = {};
     }
@@ -318,6 +327,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     if (plan.reference.rays > 0) plan.gpu_bytes += 16 * area(plan.canvas);
     if (plan.resolve) plan.gpu_bytes += area(plan.canvas) * texel;
     if (plan.exact.used) plan.gpu_bytes += area(plan.canvas) * texel + exact_bytes(plan.exact, plan.canvas);
+    if (plan.delta.used()) plan.gpu_bytes += 16 * area(plan.canvas);
     if (plan.hrc.active()) fit_hrc(plan, peak, limits);
     return plan;
 }

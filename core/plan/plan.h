@@ -10,6 +10,7 @@
 #include <glm/vec2.hpp>
 
 #include "core/plan/device_limits.h"
+#include "core/plan/delta.h"
 #include "core/plan/exact_plan.h"
 #include "core/plan/hrc.h"
 #include "core/render_stats.h"
@@ -79,6 +80,7 @@ struct Plan {
     ReferencePlan reference;
     ExactPlan exact;                    // of the method `exact`
     HrcPlan hrc;                        // inactive unless this method runs
+    DeltaPlan delta;                    // point, spot and directional lights
     bool resolve = false;               // false: cascade 0 already is the mean radiance per pixel
     bool half_floats = false;           // cascades in 16 bits, emission scaled to [0, 1]
     double radiance_scale = 1;          // emission is divided by this before it is packed

@@ -8,7 +8,6 @@ Problems unsupported(const Scene& scene) {
     const auto refuse = [&](std::string pointer, const std::string& what) {
         problems.push_back({std::move(pointer), "not_supported_yet", what + " not supported yet"});
     };
-    if (!scene.lights.empty()) refuse("/lights", "point, spot and directional lights are");
     if (scene.render.method == "hybrid") refuse("/render/method", "the method 'hybrid' is");
     if (scene.render.bounces != 0 && scene.render.method != "auto" && scene.render.method != "exact")
         refuse("/render/bounces", "bounces with the method '" + scene.render.method + "' are");

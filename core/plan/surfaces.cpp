@@ -58,7 +58,7 @@ SurfaceJobs surface_jobs(const Surfaces& surfaces, glm::ivec2 origin, glm::ivec2
             if (i + k < placed.size() && placed[i + k].tile == tile) last = i + k;
             const Surfaces::Node& node = surfaces.nodes[placed[last].node];
             jobs.nodes.push_back(node.place);
-            jobs.nodes.emplace_back(static_cast<float>(node.element), 0.0f, 0.0f, 0.0f);
+            jobs.nodes.emplace_back(static_cast<float>(node.element), node.extent.x, node.extent.y, 0.0f);
         }
         i = last + 1;
     }

@@ -18,9 +18,10 @@ struct Surfaces {
     // By piece, as glsl/exact.h lays them out.
     std::vector<glm::vec4> pieces;
     std::vector<glm::vec4> materials;
-    // By element of a piece that reflects, in no order: place just off the surface and outward normal, and which element.
+    // By element of a piece that reflects, in no order: place just off the surface and outward normal.
     struct Node {
         glm::vec4 place;
+        glm::vec2 extent;  // the element as a vector, px
         std::uint32_t element;
     };
     std::vector<Node> nodes;

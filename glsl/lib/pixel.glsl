@@ -3,6 +3,7 @@
 #include "lib/scene.glsl"
 
 layout(binding = kComposeRadianceUnit) uniform sampler2D radiance_texture;
+layout(binding = kComposeLightsUnit) uniform sampler2D lights_texture;
 layout(binding = kComposeDistanceUnit) uniform sampler2D distance_texture;
 layout(binding = kComposeMaterialUnit) uniform isampler2D material_texture;
 
@@ -11,7 +12,10 @@ float pixel_distance(ivec2 pixel) { return texelFetch(distance_texture, pixel + 
 vec3 floor_radiance(ivec2 pixel) {
     // A scene without light has a texture of one black texel.
     ivec2 at = min(pixel, textureSize(radiance_texture, 0) - 1);
-    return params.floor_albedo.rgb * texelFetch(radiance_texture, at, 0).rgb * params.radiance_scale;
+    vec3 arriving = texelFetch(radiance_texture, at, 0).rgb * params.radiance_scale;
+    // Without point, spot and directional lights one texel stands for all of them.
+    arriving += texelFetch(lights_texture, min(pixel, textureSize(lights_texture, 0) - 1), 0).rgb;
+    return params.floor_albedo.rgb * arriving;
 }
 
 vec3 solid_radiance(ivec2 pixel) {
