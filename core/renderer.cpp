@@ -26,6 +26,7 @@
 #include "core/passes/scene_buffers.h"
 #include "core/plan/plan.h"
 #include "core/plan/shape_lists.h"
+#include "core/scene/lower.h"
 
 namespace penumbra {
 namespace {
@@ -334,7 +335,10 @@ Renderer::~Renderer() {
 
 const DeviceInfo& Renderer::device() const { return impl_->info; }
 
-RenderResult Renderer::render(const Scene& scene) {
+RenderResult Renderer::render(const Scene& given) {
+    Scene made;
+    if (needs_lowering(given)) made = lowered(given);
+    const Scene& scene = needs_lowering(given) ? made : given;
     impl_->check_thread();
     impl_->context.make_current();
     try {

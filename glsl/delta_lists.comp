@@ -50,7 +50,8 @@ bool straight_between(vec2 a, vec2 b, out bool fills) {
     bool out_of = any(lessThan(max(fa, fb), vec4(0.0))) || max(ba, bb) < 0.0;
     // All of the tile before it, the light behind it, and its ends beyond both lines to the light.
     float behind = away > 0.0 ? cross2(a - ahead * away, along) : -cross2(ahead, along);
-    bool across = (max(fa.z, fb.w) < -kSlack) || (max(fa.w, fb.z) < -kSlack);
+    // (Outside of both is beyond the light.)
+    bool across = (max(fa.z, fb.w) < -kSlack && min(fa.w, fb.z) > 0.0) || (max(fa.w, fb.z) < -kSlack && min(fa.z, fb.w) > 0.0);
     fills = across && rise + tilt < 0.0 && behind > 2.0 * kSlack * (abs(along.x) + abs(along.y));
     return !out_of && t0 <= t1 && rise - tilt < 0.0;
 }

@@ -284,5 +284,5 @@ void main() {
     // Each step of the walk asks every entry; each entry starts and ends at most one interval.
     bool fits_head = params.wide != 0 ? all(lessThan(kept_lights, uvec4(65536u)))
                                       : kept.x < 65536u && kept.y < 65536u && kept.z < 256u && kept.w < 256u && total < 20000u;
-    atomicMax(counters[kExactCountWork], !fits_head ? kExactTooLong : params.wide != 0 ? 0u : (2u * total + 3u) * (total + 5u));
+    atomicMax(counters[kExactCountWork], !fits_head ? kExactTooLong : params.wide != 0 ? 0u : (2u * total + 3u) * (total + 13u));
 }

@@ -160,34 +160,51 @@ void add_slopes(vec4 jr, vec4 jg, vec4 jb, vec4 key, vec4 weight) {
     slope_y_b -= jb * across;
 }
 
+// One point after another: the program stays small, and the driver has less to compile.
+vec4 lane_of(int k) { return vec4(equal(ivec4(0, 1, 2, 3), ivec4(k))); }
+
 // The light of surfaces from `from` to `to`; top_r, top_g, top_b become their radiance at `to`.
 void gather_surfaces(bvec4 which, vec4 to) {
-    vec4 middle;
-    vec3 a0, b0, p0, r0, a1, b1, p1, r1, a2, b2, p2, r2, a3, b3, p3, r3;
-    vec4 depth;
     vec4 entry = max(top, vec4(0.0));
-    surface_light(int(entry.x), kind_of(entry.x), vec2(px.x, py.x), from.x, to.x, middle.x, a0, b0, p0, r0, depth.x);
-    surface_light(int(entry.y), kind_of(entry.y), vec2(px.y, py.y), from.y, to.y, middle.y, a1, b1, p1, r1, depth.y);
-    surface_light(int(entry.z), kind_of(entry.z), vec2(px.z, py.z), from.z, to.z, middle.z, a2, b2, p2, r2, depth.z);
-    surface_light(int(entry.w), kind_of(entry.w), vec2(px.w, py.w), from.w, to.w, middle.w, a3, b3, p3, r3, depth.w);
+    vec4 middle = vec4(0.0), depth = vec4(0.0);
+    vec4 ar = vec4(0.0), ag = vec4(0.0), ab = vec4(0.0), br = vec4(0.0), bg = vec4(0.0), bb = vec4(0.0);
+    vec4 pr = vec4(0.0), pg = vec4(0.0), pb = vec4(0.0), qr = vec4(0.0), qg = vec4(0.0), qb = vec4(0.0);
+    for (int k = 0; k < 4; ++k) {
+        vec4 lane = lane_of(k);
+        vec3 a, b, p, q;
+        float m, d;
+        float e = dot(lane, entry);
+        surface_light(int(e), kind_of(e), vec2(dot(lane, px), dot(lane, py)), dot(lane, from), dot(lane, to), m, a, b, p, q, d);
+        middle += lane * m;
+        depth += lane * d;
+        ar += lane * a.r;
+        ag += lane * a.g;
+        ab += lane * a.b;
+        br += lane * b.r;
+        bg += lane * b.g;
+        bb += lane * b.b;
+        pr += lane * p.r;
+        pg += lane * p.g;
+        pb += lane * p.b;
+        qr += lane * q.r;
+        qg += lane * q.g;
+        qb += lane * q.b;
+    }
     vec4 before = pick(vec4(0.0), weight_of(from, middle), which);
     vec4 after = pick(vec4(0.0), weight_of(middle, to), which);
-    sum_r += before * vec4(a0.r, a1.r, a2.r, a3.r) + after * vec4(b0.r, b1.r, b2.r, b3.r);
-    sum_g += before * vec4(a0.g, a1.g, a2.g, a3.g) + after * vec4(b0.g, b1.g, b2.g, b3.g);
-    sum_b += before * vec4(a0.b, a1.b, a2.b, a3.b) + after * vec4(b0.b, b1.b, b2.b, b3.b);
-    top_r = pick(top_r, vec4(r0.r, r1.r, r2.r, r3.r), which);
-    top_g = pick(top_g, vec4(r0.g, r1.g, r2.g, r3.g), which);
-    top_b = pick(top_b, vec4(r0.b, r1.b, r2.b, r3.b), which);
+    sum_r += before * ar + after * br;
+    sum_g += before * ag + after * bg;
+    sum_b += before * ab + after * bb;
+    top_r = pick(top_r, qr, which);
+    top_g = pick(top_g, qg, which);
+    top_b = pick(top_b, qb, which);
     if (kSlopes != 0) {
         // As a point moves, what it sees in one direction moves along the surface: a change of radiance there acts as an edge
         // would, at its distance.
         vec4 turn = inversesqrt(1.0 + middle * middle) / max(depth, vec4(1e-6));
         vec4 weight = pick(vec4(0.0), turn, which);
-        vec4 jr = vec4(p0.r - r0.r, p1.r - r1.r, p2.r - r2.r, p3.r - r3.r);
-        vec4 jg = vec4(p0.g - r0.g, p1.g - r1.g, p2.g - r2.g, p3.g - r3.g);
-        vec4 jb = vec4(p0.b - r0.b, p1.b - r1.b, p2.b - r2.b, p3.b - r3.b);
-        add_slopes(jr, jg, jb, middle, weight);
-        third += max(max(abs(jr), abs(jg)), abs(jb)) * weight * weight * weight;
+        add_slopes(pr - qr, pg - qg, pb - qb, middle, weight);
+        third += max(max(abs(pr - qr), abs(pg - qg)), abs(pb - qb)) * weight * weight * weight;
     }
 }
 
@@ -237,11 +254,18 @@ void change(bvec4 changed, float sector_angle) {
         b = pick(sb, b, found);
     }
     if (kSurfaces != 0) {
-        vec3 s0 = surface_at(entry.x, kind_of(near_entry.x), vec2(px.x, py.x), now.x), s1 = surface_at(entry.y, kind_of(near_entry.y), vec2(px.y, py.y), now.y);
-        vec3 s2 = surface_at(entry.z, kind_of(near_entry.z), vec2(px.z, py.z), now.z), s3 = surface_at(entry.w, kind_of(near_entry.w), vec2(px.w, py.w), now.w);
-        r = pick(r, vec4(s0.r, s1.r, s2.r, s3.r), found);
-        g = pick(g, vec4(s0.g, s1.g, s2.g, s3.g), found);
-        b = pick(b, vec4(s0.b, s1.b, s2.b, s3.b), found);
+        vec4 sr = vec4(0.0), sg = vec4(0.0), sb = vec4(0.0);
+        for (int k = 0; k < 4; ++k) {
+            vec4 lane = lane_of(k);
+            float e = dot(lane, max(near_entry, vec4(0.0)));
+            vec3 c = surface_at(int(e), kind_of(e), vec2(dot(lane, px), dot(lane, py)), dot(lane, now));
+            sr += lane * c.r;
+            sg += lane * c.g;
+            sb += lane * c.b;
+        }
+        r = pick(r, sr, found);
+        g = pick(g, sg, found);
+        b = pick(b, sb, found);
     }
     uvec4 id = uvec4(pick(vec4(1.0), vec4(l0.a, l1.a, l2.a, l3.a) + 2.0, found));
     vec4 end_depth = vec4(1.0);
@@ -373,7 +397,7 @@ void solve(int tile_index, ivec2 p0, ivec2 p1, ivec2 p2, ivec2 p3, bvec4 solid) 
         uvec4 head = texelFetch(heads, list + s);
         // Each entry starts and ends at most one interval, and each step of the walk asks every entry.
         int most = int((head.y & 0xffffu) + (head.z & 0xffffu) + (head.w & 0xffu) + ((head.w >> 16) & 0xffu));
-        most = head.x >= kExactOpen ? 10 : (2 * most + 4) * (most + 5);
+        most = head.x >= kExactOpen ? 20 : (2 * most + 4) * (most + (kSurfaces != 0 ? 13 : 5));
         if (most > budget && budget < kBudget) break;
         if (head.x != kExactDark) {
             vec4 sector = texelFetch(sectors, s);
@@ -432,7 +456,7 @@ void solve(int tile_index, ivec2 p0, ivec2 p1, ivec2 p2, ivec2 p3, bvec4 solid) 
                 // What was nearest hides as long as it goes on.
                 near_end = pick(vec4(-kFar), top_end, greaterThan(top_end, now));
                 near_far = top_far;
-                budget -= 5 + end_entry - first_straight;
+                budget -= 5 + end_entry - first_straight + (kSurfaces != 0 ? 8 : 0);
                 for (int i = first_straight; i < first_disc; ++i) consider(i, straight_at(i, ahead));
                 for (int i = first_disc; i < first_arc; ++i) consider(i, disc_at(i, ahead));
                 if (kArcs != 0) for (int i = first_arc; i < first_ellipse; i += 2) consider(i, arc_at(i, ahead));

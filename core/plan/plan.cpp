@@ -281,6 +281,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     else
         plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
     plan.exact.bounces = exact && reflecting ? scene.render.bounces : 0;
+    plan.exact.converged = scene.render.converged ? scene.render.tolerance : 0;
     if (scene.render.bounces > 0 && !reflecting) leave_out("bounces", "no surface reflects", double(scene.render.bounces));
     plan.delta.lights = pack_lights(scene);
     if (plan.delta.used() && !exact) {

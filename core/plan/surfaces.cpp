@@ -14,11 +14,11 @@ constexpr int kMostElements = 1024;  // a loop of the reflection, well below wha
 
 double element_size(Quality quality) {
     switch (quality) {
-        case Quality::draft: return 12;
-        case Quality::standard: return 6;
-        case Quality::high: return 3;
+        case Quality::draft: return 6;
+        case Quality::standard: return 3;
+        case Quality::high: return 1.5;
     }
-    return 6;
+    return 3;
 }
 
 int element_count(const SurfaceCourse& course, double size) {

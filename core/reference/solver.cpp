@@ -17,6 +17,7 @@
 #include "core/reference/radiosity.h"
 #include "core/reference/sky.h"
 #include "core/reference/sweep.h"
+#include "core/scene/lower.h"
 
 namespace penumbra::reference {
 
@@ -102,7 +103,7 @@ struct ExactSolver::State {
     Sweep sweep;
 
     State(const Scene& given, const SolveOptions& with)
-        : scene(given),
+        : scene(lowered(given)),
           options(with),
           boundary(scene, with.max_pieces, scene.render.bounces > 0),
           sky(scene.sky),
@@ -136,7 +137,8 @@ struct ExactSolver::State {
         pixels_share = {part, 1 - part};
         int round = 0;
         cancelled =
-            !reflect(*elements, boundary, sky, lights, bounces, refinement,
+            !reflect(*elements, boundary, sky, lights, bounces,
+                     scene.render.converged ? scene.render.tolerance : 0, refinement,
                      [&](std::size_t count, const std::function<void(std::size_t, Sweep&)>& body) {
                          const Share share{part * round / rounds, part / rounds};
                          ++round;

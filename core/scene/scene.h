@@ -85,6 +85,7 @@ struct Shape {
 struct PointLight {
     Point position{0};
     Colour intensity{0};  // radiant intensity per radian
+    double radius = 0;    // more than 0: a disc that shines, see core/scene/lower.h
 };
 
 struct SpotLight {
@@ -138,7 +139,9 @@ enum class Solids { emission, lit };
 struct RenderSettings {
     std::string method = "auto";
     Quality quality = Quality::standard;
-    int bounces = 0;
+    int bounces = 0;             // at most, when `converged`
+    bool converged = false;      // bounces end before, once nothing changes by more than `tolerance`
+    double tolerance = 1e-3;     // share of the brightest surface's radiance
     Skip skip = Skip::all;
     std::string view = "final";
 };

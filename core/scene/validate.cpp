@@ -128,6 +128,7 @@ public:
     LightChecks(RangeChecks& checks, const Path& where) : checks_(checks), where_(where) {}
 
     void operator()(const PointLight& light) {
+        checks_.between(where_.key("radius"), light.radius, 0.0, checks_.limits().max_coordinate);
         checks_.coordinates(where_.key("position"), light.position);
         colour("intensity", light.intensity);
     }
@@ -183,7 +184,8 @@ void validate_word(RangeChecks& checks, const Path& where, std::string_view word
 void validate_render(RangeChecks& checks, const Path& where, const RenderSettings& render) {
     validate_word(checks, where.key("method"), render.method,
                   is_known_word(render.method, known_methods()), known_methods());
-    checks.between(where.key("bounces"), render.bounces, 0, checks.limits().max_bounces);
+    if (!render.converged) checks.between(where.key("bounces"), render.bounces, 0, checks.limits().max_bounces);
+    checks.between(where.key("tolerance"), render.tolerance, 1e-6, 1);
     validate_word(checks, where.key("view"), render.view, is_known_view(render.view),
                   known_views());
 }

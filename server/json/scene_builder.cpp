@@ -276,6 +276,7 @@ private:
             PointLight light;
             members.need_pair("position", "a point [x, y]", light.position);
             members.need_colour("intensity", light.intensity);
+            members.number("radius", light.radius);
             return light;
         }
         if (*type == 1) {
@@ -310,12 +311,24 @@ private:
         if (const auto quality = read_choice(members, where, "quality", kQualities)) {
             render.quality = std::array{Quality::draft, Quality::standard, Quality::high}[*quality];
         }
-        members.integer("bounces", render.bounces,
-                        "from 0 to " + std::to_string(limits_.max_bounces));
+        read_bounces(members, where, render);
+        members.number("tolerance", render.tolerance);
         if (const auto skip = read_choice(members, where, "skip", kSkips)) {
             render.skip = *skip == 0 ? Skip::all : Skip::none;
         }
         members.string("view", render.view);
+    }
+
+    void read_bounces(const Members& members, const Path& where, RenderSettings& render) {
+        const NodeId id = members.find("bounces");
+        if (id != kNoNode && reader_.node(id).kind == NodeKind::string) {
+            constexpr std::string_view kWords[] = {"converged"};
+            render.converged = reader_.choice(where.key("bounces"), id, kWords).has_value();
+            render.bounces = limits_.max_converging_bounces;
+            return;
+        }
+        members.integer("bounces", render.bounces,
+                        "from 0 to " + std::to_string(limits_.max_bounces) + ", or \"converged\"");
     }
 
     void read_output(const Path& where, NodeId id, OutputSettings& output) {

@@ -546,9 +546,11 @@ TEST(Unsupported, NamesEachKeyAndWhatItHolds) {
         EXPECT_NE(problems[0].message.find("not supported yet"), std::string::npos) << problems[0].message;
         EXPECT_NE(problems[0].message.find(named), std::string::npos) << problems[0].message;
     };
-    expect_refused("/lights", "lights", [](Scene& s) { s.lights.push_back(PointLight{{1, 1}, Colour(1)}); });
     expect_refused("/render/method", "'hybrid'", [](Scene& s) { s.render.method = "hybrid"; });
-    expect_refused("/render/bounces", "bounces", [](Scene& s) { s.render.bounces = 1; });
+    expect_refused("/render/bounces", "bounces with the method 'rc'", [](Scene& s) {
+        s.render.bounces = 1;
+        s.render.method = "rc";
+    });
     expect_refused("/render/view", "'probes'", [](Scene& s) { s.render.view = "probes"; });
     expect_refused("/output/format", "'exr'", [](Scene& s) { s.output.format = "exr"; });
     expect_refused("/output/bit_depth", "16", [](Scene& s) { s.output.bit_depth = 16; });
