@@ -34,8 +34,9 @@ vec3 pixel_radiance(ivec2 pixel) {
 
 void main() {
     ivec2 texel = params.origin + ivec2(gl_GlobalInvocationID.xy);
-    ivec2 pixel = texel + ivec2(0, params.first_row);
-    if (pixel.x >= params.extent.x || pixel.y >= params.extent.y) return;
+    ivec2 size = imageSize(picture_image);
+    if (texel.x >= size.x || texel.y >= size.y) return;
+    ivec2 pixel = texel + params.first_pixel;
     vec3 radiance = max(pixel_radiance(pixel) * params.exposure, vec3(0.0));
     vec3 encoded = srgb_encode(clamp(tonemap(radiance, params.tonemap, params.white), 0.0, 1.0));
     imageStore(picture_image, texel, vec4(encoded, 1.0));

@@ -101,6 +101,10 @@ struct ExactParams {
     int pad2;
     int pad5;
     int pad6;
+    ivec4 window;        // first and end of the tiles, of the band, whose pixels are asked for
+    ivec2 fill_first;    // first of those pixels, of the band
+    int fill_row;        // where their rows begin in the image
+    int pad7;
 };
 
 #ifdef __cplusplus

@@ -26,13 +26,13 @@ public:
     const std::string& name() const { return name_; }
 
     // Covers `extent` invocations, the last groups in part, in bands of rows of about `slice` invocations each
-    // (0: one dispatch), so that no dispatch hogs the device. `Params::origin` is set per band.
+    // (0: one dispatch), so that no dispatch hogs the device; rows before `first_row` are left out. `Params::origin` is set per band.
     // Returns the number of dispatches.
     template <class Params>
-    int dispatch(Params params, glm::ivec2 extent, std::size_t slice = 0) {
+    int dispatch(Params params, glm::ivec2 extent, std::size_t slice = 0, int first_row = 0) {
         int dispatches = 0;
         const int rows = rows_per_band(extent, slice);
-        for (int y = 0; y < extent.y; y += rows) {
+        for (int y = first_row; y < extent.y; y += rows) {
             params.origin = {0, y};
             const int height = y + rows < extent.y ? rows : extent.y - y;
             run(&params, sizeof(Params), {extent.x, height});

@@ -37,7 +37,9 @@ PassWork ComposePass::run(const Plan& plan, const Scene& scene, bool linear, con
     params.exposure = static_cast<float>(std::exp2(scene.output.exposure_ev));
     params.radiance_scale = static_cast<float>(plan.radiance_scale);
     params.white = kReinhardWhite;
-    params.first_row = first_row;
+    params.first_pixel = plan.shown.first + glm::ivec2(0, first_row);
+    // hrc finds the light of the whole canvas.
+    params.first_lit = plan.hrc.active() ? glm::ivec2(0) : plan.lit.first;
     params.has_shapes = scene.shapes.empty() ? 0 : 1;
     radiance.bind_texture(glsl::kComposeRadianceUnit);
     field.distance.bind_texture(glsl::kComposeDistanceUnit);

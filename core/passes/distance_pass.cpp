@@ -22,7 +22,7 @@ PassWork DistancePass::run(const Plan& plan, const ShapeLists& lists, const Pass
     params.far_px = static_cast<float>(plan.grid.diagonal_px);
     const auto dispatch = [&](double shapes) {
         const auto slice = static_cast<std::size_t>(double(settings.distance_iterations) / std::max(shapes, 1.0));
-        work.dispatches += program_.dispatch(params, plan.grid.size, slice);
+        work.dispatches += program_.dispatch(params, {plan.grid.size.x, plan.end_distance_row}, slice, plan.first_distance_row);
         work.bytes += out.distance.bytes() + out.material.bytes();
         params.continues = 1;
     };

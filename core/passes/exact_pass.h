@@ -62,7 +62,6 @@ private:
     gl::StorageBuffer coarse_heads_, coarse_entries_, coarse_lights_;
     gl::StorageBuffer heads_, entries_, lights_;
     gl::StorageBuffer points_, jobs_, counters_, means_;
-    std::size_t points_solved_ = 0;
 };
 
 }  // namespace penumbra

@@ -37,6 +37,7 @@ struct PassWork {
     int dispatches = 0;
     std::size_t rays = 0;
     std::size_t bytes = 0;  // written to textures
+    std::size_t points = 0;  // solved
 };
 
 }  // namespace penumbra

@@ -9,8 +9,8 @@ layout(binding = kComposeMaterialUnit) uniform isampler2D material_texture;
 float pixel_distance(ivec2 pixel) { return texelFetch(distance_texture, pixel + params.border, 0).r; }
 
 vec3 floor_radiance(ivec2 pixel) {
-    // A scene without light has a texture of one black texel.
-    ivec2 at = min(pixel, textureSize(radiance_texture, 0) - 1);
+    // A constant picture has a texture of one texel.
+    ivec2 at = min(pixel - params.first_lit, textureSize(radiance_texture, 0) - 1);
     return params.floor_albedo.rgb * texelFetch(radiance_texture, at, 0).rgb * params.radiance_scale;
 }
 
