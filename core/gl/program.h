@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
+#include <utility>
 
 #include <glm/ext/vector_int2.hpp>
 
@@ -55,6 +57,27 @@ private:
     std::string name_;
     glm::ivec2 group_{1};
     UniformBuffer params_;
+};
+
+// One program in the forms that its constants give it, each built when it is first asked for; the general form at once, so
+// that a shader that does not build is found at the start.
+class ProgramForms {
+public:
+    ProgramForms(std::string name, std::size_t params_bytes, std::string shader_dir)
+        : name_(std::move(name)), params_bytes_(params_bytes), shader_dir_(std::move(shader_dir)) {
+        of({});
+    }
+    ComputeProgram& of(const ShaderConstants& constants) {
+        const auto found = forms_.find(constants);
+        if (found != forms_.end()) return found->second;
+        return forms_.emplace(constants, ComputeProgram(name_, params_bytes_, shader_dir_, constants)).first->second;
+    }
+
+private:
+    std::string name_;
+    std::size_t params_bytes_;
+    std::string shader_dir_;
+    std::map<ShaderConstants, ComputeProgram> forms_;
 };
 
 }  // namespace penumbra::gl

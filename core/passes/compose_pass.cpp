@@ -45,8 +45,13 @@ PassWork ComposePass::run(const Plan& plan, const Scene& scene, bool linear, con
     field.distance.bind_texture(glsl::kComposeDistanceUnit);
     field.material.bind_texture(glsl::kComposeMaterialUnit);
     out.bind_image(glsl::kComposeImageBinding, GL_WRITE_ONLY);
+    gl::ShaderConstants constants = scene_constants(plan.needs);
+    if (!plan.needs.general && !linear) {
+        constants.emplace_back("kCurve", params.tonemap);
+        constants.emplace_back("kEdges", params.has_shapes == 0 ? 0 : params.antialias != 0 ? 2 : 1);
+    }
     PassWork work;
-    work.dispatches = (linear ? linear_ : display_).dispatch(params, out.size(), settings.pixels);
+    work.dispatches = (linear ? linear_ : display_).of(constants).dispatch(params, out.size(), settings.pixels);
     work.bytes = out.bytes();
     return work;
 }

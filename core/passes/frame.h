@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "core/gl/handles.h"
+#include "core/gl/shader_source.h"
 #include "core/gl/texture_pool.h"
+#include "core/plan/plan.h"
 
 namespace penumbra {
 
@@ -31,6 +33,12 @@ struct PassSettings {
         if (textures != nullptr) textures->give(std::move(texture));
     }
 };
+
+// For programs that read the scene (glsl/lib/scene.glsl): the kinds of shapes that it has. None: made for all.
+inline gl::ShaderConstants scene_constants(const ProgramNeeds& needs) {
+    if (needs.general) return {};
+    return {{"kSceneEllipses", needs.ellipses ? 1 : 0}, {"kSceneOutlines", needs.outlines ? 1 : 0}, {"kSceneBitmaps", needs.bitmaps ? 1 : 0}};
+}
 
 // What a pass reports of its run.
 struct PassWork {

@@ -306,6 +306,20 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         has_bitmaps = has_bitmaps || std::holds_alternative<Bitmap>(shape.geometry);
     }
 
+    if (skip(Saving::programs)) {
+        plan.needs = {false, false, false, false};
+        for (const Shape& shape : scene.shapes) {
+            const Geometry& g = shape.geometry;
+            plan.needs.ellipses = plan.needs.ellipses || std::holds_alternative<Ellipse>(g);
+            plan.needs.outlines = plan.needs.outlines || std::holds_alternative<Polyline>(g) || std::holds_alternative<Polygon>(g);
+            plan.needs.bitmaps = plan.needs.bitmaps || std::holds_alternative<Bitmap>(g);
+        }
+    }
+    if (!plan.needs.general) {
+        const int kinds = 3 - int(plan.needs.ellipses) - int(plan.needs.outlines) - int(plan.needs.bitmaps);
+        const int curves = scene.output.format == "png" ? 5 : 0;
+        if (kinds + curves > 0) leave_out("branches", "programs are made for the shapes and the tone curve that the scene has", kinds + curves);
+    }
     plan.shape_slices = slice_shapes(scene.shapes);
     if (plan.shape_slices.empty()) {
         if (skip(Saving::distance))

@@ -75,6 +75,14 @@ struct ReferencePlan {
     std::size_t tests_per_ray = 1;  // loop iterations of one ray, at most
 };
 
+// What programs must be made for. Mesa 22 runs both sides of every branch, so that each kind that a scene has not costs.
+struct ProgramNeeds {
+    bool general = true;  // for anything
+    bool ellipses = true;
+    bool outlines = true;  // polylines and polygons
+    bool bitmaps = true;
+};
+
 struct Plan {
     std::string method;
     std::string method_reason;
@@ -84,6 +92,7 @@ struct Plan {
     GridPlan grid;
     int first_distance_row = 0;         // of the grid: distances are found from here
     int end_distance_row = 0;           // to here
+    ProgramNeeds needs;
     std::optional<Colour> constant;     // mean radiance of every pixel: no pass runs but the picture's
     std::vector<ShapeSlice> shape_slices;
     bool list_shapes = false;           // per tile of the grid: each pixel asks its tile's shapes only

@@ -171,7 +171,7 @@ TEST(MakePlan, HrcIsLeftOutWhereNothingEmits) {
     scene.sky.radiance = Colour(0);
     const Plan plan = make_plan(scene, {});
     EXPECT_FALSE(plan.hrc.active());
-    EXPECT_TRUE(std::any_of(plan.skipped.begin(), plan.skipped.end(), [](const SkippedWork& s) { return s.what == "ray pieces"; }));
+    EXPECT_TRUE(std::any_of(plan.skipped.begin(), plan.skipped.end(), [](const SkippedWork& s) { return s.what == "all passes"; }));
 }
 
 TEST(MakePlan, HrcTakesHalfFloatsWhenLargeAndIsRefusedWhenTooLarge) {
