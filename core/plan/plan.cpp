@@ -196,7 +196,7 @@ std::size_t leave_out_far(std::vector<CascadePlan>& cascades, const Extent& matt
             const double y = std::max(matters.y1 - low.y, high.y - matters.y0);
             farthest = std::max(farthest, std::hypot(x, y));
         }
-        if (last.start < farthest + kNearSurface) break;
+        if (!matters.empty() && last.start < farthest + kNearSurface) break;
         cascades.pop_back();
         cascades.back().end = std::max(cascades.back().end, diagonal_px);
         ++left_out;

@@ -151,6 +151,9 @@ Scene hrc_scene(int width, int height, Quality quality) {
     scene.canvas.width = width;
     scene.canvas.height = height;
     scene.sky.radiance = Colour(3);
+    Shape shape;
+    shape.geometry = Circle{{5, 5}, 2};
+    scene.shapes.push_back(shape);
     scene.render.method = "hrc";
     scene.render.quality = quality;
     return scene;

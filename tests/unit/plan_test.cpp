@@ -320,6 +320,7 @@ TEST(MakePlan, RefusesWhatTheDeviceCannotHold) {
     Scene scene = scene_of(8192, 8192);
     scene.render.method = "rc";
     scene.sky.radiance = Colour(1);
+    scene.shapes.push_back(shape_of(Circle{{5, 5}, 2}));
     EXPECT_NO_THROW(make_plan(scene, {}));
     scene.render.quality = Quality::high;
     try {
