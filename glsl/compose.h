@@ -32,10 +32,8 @@ struct ComposeParams {
     float radiance_scale; // what the radiance texture must be multiplied with
     float white;         // Reinhard extended: the radiance that becomes 1
     int has_shapes;
-    int first_row;       // of the canvas in the image: tall pictures are composed in bands
-    int pad0;
-    int pad1;
-    int pad2;
+    ivec2 first_pixel;   // of the canvas in the image: parts of it, and bands of tall pictures
+    ivec2 first_lit;     // the pixel of the radiance's first texel
 };
 
 #ifdef __cplusplus

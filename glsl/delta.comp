@@ -16,7 +16,8 @@ layout(binding = kDeltaRadianceImage, rgba32f) uniform image2D radiance_image;
 void main() {
     ivec2 at = params.origin + ivec2(gl_GlobalInvocationID.xy);
     if (at.x >= params.extent.x || at.y >= params.extent.y) return;
-    ivec2 pixel = at + ivec2(0, params.first_row);
+    ivec2 pixel = at + params.list_origin;
+    ivec2 place = at + ivec2(0, params.first_row);
     // Without shapes the distance is a single texel.
     float room = texelFetch(distance_texture, min(pixel + params.border, textureSize(distance_texture, 0) - 1), 0).r;
     ivec2 tile = at / kDeltaTile;
@@ -30,6 +31,6 @@ void main() {
         bool dark = head.x == kDeltaDark || all(equal(arrival.strength, vec3(0.0)));
         if (!dark && !list_hides(head, p, arrival.way, arrival.end)) sum += arrival.strength;
     }
-    vec4 radiance = params.adds != 0 ? imageLoad(radiance_image, pixel) : vec4(0.0, 0.0, 0.0, 1.0);
-    imageStore(radiance_image, pixel, radiance + vec4(sum * 0.15915494309189535, 0.0));
+    vec4 radiance = params.adds != 0 ? imageLoad(radiance_image, place) : vec4(0.0, 0.0, 0.0, 1.0);
+    imageStore(radiance_image, place, radiance + vec4(sum * 0.15915494309189535, 0.0));
 }

@@ -58,7 +58,7 @@ struct DeltaParams {
     int first_light;    // that this dispatch adds
     int end_light;
     int capacity;       // texels of entries
-    int first_row;      // of the band
+    int first_row;      // of the band, in the image
     int jobs;
     ivec4 root_counts;  // of the one list of all pieces, by kind
     int adds;           // to what an earlier dispatch found

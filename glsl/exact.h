@@ -118,6 +118,10 @@ struct ExactParams {
     int wide;            // the lists are for making further lists: heads of two texels
     int jobs;            // of surfaces
     ivec2 list_origin;   // of the lists' first tile, px
+    ivec4 window;        // first and end of the tiles, of the band, whose pixels are asked for
+    ivec2 fill_first;    // first of those pixels, of the band
+    int fill_row;        // where their rows begin in the image
+    int pad7;
 };
 
 #ifdef __cplusplus

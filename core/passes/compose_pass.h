@@ -20,8 +20,8 @@ public:
                  const gl::Texture2D& lights, const DistanceField& field, const PassSettings& settings, int first_row, gl::Texture2D& out);
 
 private:
-    gl::ComputeProgram display_;
-    gl::ComputeProgram linear_;
+    gl::ProgramForms display_;
+    gl::ProgramForms linear_;
 };
 
 }  // namespace penumbra

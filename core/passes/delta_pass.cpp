@@ -117,14 +117,14 @@ int DeltaPass::in_slices(const Lists& lists, int samples, glsl::DeltaParams para
 
 PassWork DeltaPass::pixels(const Plan& plan, const DistanceField& field, const PassSettings& settings, gl::Texture2D& out) {
     PassWork work;
-    out = settings.take(GL_RGBA32F, plan.canvas);
+    out = settings.take(GL_RGBA32F, plan.lit.size);
     work.bytes = out.bytes();
-    const std::size_t of_row = static_cast<std::size_t>(divided_up(plan.canvas.x, glsl::kDeltaTile)) * static_cast<std::size_t>(plan.delta.size());
+    const std::size_t of_row = static_cast<std::size_t>(divided_up(plan.lit.size.x, glsl::kDeltaTile)) * static_cast<std::size_t>(plan.delta.size());
     const int rows = kCoarseTile * static_cast<int>(std::clamp<std::size_t>(kMostLists / (4 * of_row), 1, 1 << 12));
-    for (int row = 0; row < plan.canvas.y; row += rows) {
+    for (int row = 0; row < plan.lit.size.y; row += rows) {
         Lists lists;
-        const glm::ivec2 area{plan.canvas.x, std::min(rows, plan.canvas.y - row)};
-        work.dispatches += make_lists(plan, {0, row}, area, lists);
+        const glm::ivec2 area{plan.lit.size.x, std::min(rows, plan.lit.size.y - row)};
+        work.dispatches += make_lists(plan, plan.lit.first + glm::ivec2(0, row), area, lists);
         lists.params.first_row = row;
         lists.params.extent = area;
         out.bind_image(glsl::kDeltaRadianceImage, GL_READ_WRITE);
@@ -133,7 +133,7 @@ PassWork DeltaPass::pixels(const Plan& plan, const DistanceField& field, const P
             return pixels_.dispatch(p, p.extent, settings.pixels / static_cast<std::size_t>(1 + (p.end_light - p.first_light) / 4));
         });
     }
-    work.rays = static_cast<std::size_t>(plan.canvas.x) * static_cast<std::size_t>(plan.canvas.y) * static_cast<std::size_t>(plan.delta.size());
+    work.rays = static_cast<std::size_t>(plan.lit.size.x) * static_cast<std::size_t>(plan.lit.size.y) * static_cast<std::size_t>(plan.delta.size());
     return work;
 }
 

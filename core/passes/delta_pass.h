@@ -17,7 +17,7 @@ class DeltaPass {
 public:
     explicit DeltaPass(const std::string& shader_dir);
 
-    // Reads the distance. Writes what the lights add to the mean radiance of each free pixel, rgba32f, canvas.
+    // Reads the distance. Writes what the lights add to the mean radiance of each free pixel, rgba32f, of plan.lit.
     PassWork pixels(const Plan& plan, const DistanceField& field, const PassSettings& settings, gl::Texture2D& out);
 
     // Writes the irradiance of the elements of surfaces into an image of kDeltaNodeRow columns. `jobs` and `nodes` as

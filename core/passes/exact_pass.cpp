@@ -337,7 +337,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         exact.sky_nodes > 0 ? sky_nodes(sky, exact.sky_nodes, plan.radiance_scale) : std::vector<glm::vec4>();
     band.sky = gl::BufferTexture(GL_RGBA32F, nodes.data(), nodes.size() * 16);
 
-    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.canvas);
+    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.lit.size);
     glsl::ExactParams& params = band.params;
     params.canvas = plan.canvas;
     params.border = plan.grid.border;
@@ -359,6 +359,14 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         band.area = {plan.canvas.x, std::min(exact.band_rows, plan.canvas.y - row)};
         params.first_row = row;
         params.list_origin = {0, row};
+        // Of this band, the rows that are asked for, and the tiles that they are in.
+        const int first_lit = std::max(plan.lit.first.y - row, 0);
+        const int end_lit = std::min(plan.lit.end().y - row, band.area.y);
+        if (first_lit >= end_lit) continue;
+        params.window = {plan.lit.first.x / glsl::kExactTile, first_lit / glsl::kExactTile,
+                         divided_up(plan.lit.end().x, glsl::kExactTile), divided_up(end_lit, glsl::kExactTile)};
+        params.fill_first = {plan.lit.first.x, first_lit};
+        params.fill_row = row + first_lit - plan.lit.first.y;
         params.tiles = {divided_up(band.area.x, glsl::kExactTile), divided_up(band.area.y, glsl::kExactTile)};
         const std::size_t tiles = static_cast<std::size_t>(params.tiles.x) * static_cast<std::size_t>(params.tiles.y);
         std::size_t room = 0;
@@ -425,7 +433,8 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             record("exact cells", cells, [&] { return split(level, false); });
             record(points_name(level + 1).c_str(), cells * 2, [&] { return solve(plan, field, band, level + 1); });
         }
-        record("exact fill", {plan.canvas.x, band.area.y}, [&] {
+        std::vector<std::uint32_t> counted(zero.size());
+        record("exact fill", {plan.lit.size.x, end_lit - first_lit}, [&] {
             PassWork work;
             band.value.bind_image(glsl::kExactValueImage, GL_READ_ONLY);
             band.slope_x.bind_image(glsl::kExactSlopeXImage, GL_READ_ONLY);
@@ -433,16 +442,15 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             band.leaf.bind_image(glsl::kExactLeafImage, GL_READ_ONLY);
             out.bind_image(glsl::kExactRadianceImage, GL_WRITE_ONLY);
             glsl::ExactParams p = params;
-            p.extent = {plan.canvas.x, band.area.y};
+            p.extent = {plan.lit.size.x, end_lit - first_lit};
             work.dispatches = fill_.dispatch(p, p.extent, settings.pixels);
+            counters_.read(0, counted.data(), counted.size() * 4);
+            work.points = std::accumulate(counted.begin() + glsl::kExactCountTiles, counted.end(), std::size_t(0));
             return work;
         });
-        std::vector<std::uint32_t> counted(zero.size());
-        counters_.read(0, counted.data(), counted.size() * 4);
         if (counted[glsl::kExactCountSpent] != 0)
             throw TooDense("The scene is too dense for the method 'exact' on this device: at " +
                            std::to_string(counted[glsl::kExactCountSpent]) + " points its loops ran out of iterations.");
-        points_solved_ += std::accumulate(counted.begin() + glsl::kExactCountTiles, counted.end(), std::size_t(0));
         settings.give(std::move(band.value));
         settings.give(std::move(band.slope_x));
         settings.give(std::move(band.slope_y));

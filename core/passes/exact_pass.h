@@ -72,7 +72,6 @@ private:
     gl::StorageBuffer heads_, entries_, lights_;
     gl::StorageBuffer points_, jobs_, counters_, means_;
     gl::StorageBuffer elements_, change_;
-    std::size_t points_solved_ = 0;
 };
 
 }  // namespace penumbra

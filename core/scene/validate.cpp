@@ -46,6 +46,16 @@ void validate_domain(RangeChecks& checks, const Path& where, const Canvas& canva
                    number_text(limits.max_domain_pixels) + " in all are allowed");
 }
 
+void validate_region(RangeChecks& checks, const Path& where, const Canvas& canvas) {
+    const PixelRect& region = *canvas.region;
+    if (checks.between(where.index(0), region.x, 0, canvas.width - 1)) {
+        checks.between(where.index(2), region.w, 1, canvas.width - region.x);
+    }
+    if (checks.between(where.index(1), region.y, 0, canvas.height - 1)) {
+        checks.between(where.index(3), region.h, 1, canvas.height - region.y);
+    }
+}
+
 void validate_canvas(RangeChecks& checks, const Path& where, const Canvas& canvas) {
     const Limits& limits = checks.limits();
     const bool width =
@@ -57,6 +67,9 @@ void validate_canvas(RangeChecks& checks, const Path& where, const Canvas& canva
         checks.between(where.key("margin"), canvas.margin, 0, limits.max_coordinate);
     const Path floor = where.key("floor");
     checks.colour(floor.key("albedo"), canvas.floor_albedo, 1);
+    if (width && height && canvas.region) {
+        validate_region(checks, where.key("region"), canvas);
+    }
     if (!width || !height || !view) {
         return;
     }

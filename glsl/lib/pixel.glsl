@@ -10,11 +10,10 @@ layout(binding = kComposeMaterialUnit) uniform isampler2D material_texture;
 float pixel_distance(ivec2 pixel) { return texelFetch(distance_texture, pixel + params.border, 0).r; }
 
 vec3 floor_radiance(ivec2 pixel) {
-    // A scene without light has a texture of one black texel.
-    ivec2 at = min(pixel, textureSize(radiance_texture, 0) - 1);
-    vec3 arriving = texelFetch(radiance_texture, at, 0).rgb * params.radiance_scale;
-    // Without point, spot and directional lights one texel stands for all of them.
-    arriving += texelFetch(lights_texture, min(pixel, textureSize(lights_texture, 0) - 1), 0).rgb;
+    // A constant picture has a texture of one texel, and so have the lights of a scene without any.
+    ivec2 at = pixel - params.first_lit;
+    vec3 arriving = texelFetch(radiance_texture, min(at, textureSize(radiance_texture, 0) - 1), 0).rgb * params.radiance_scale;
+    arriving += texelFetch(lights_texture, min(at, textureSize(lights_texture, 0) - 1), 0).rgb;
     return params.floor_albedo.rgb * arriving;
 }
 

@@ -70,6 +70,11 @@ private:
                                            "a rectangle of four numbers [x, y, width, height]");
             canvas.view = ViewRect{v[0], v[1], v[2], v[3]};
         }
+        if (const NodeId region = members.find("region"); region != kNoNode) {
+            const auto r = reader_.integers(where.key("region"), region, 4,
+                                            "a part of the canvas in four whole numbers [x, y, width, height]");
+            canvas.region = PixelRect{r[0], r[1], r[2], r[3]};
+        }
         members.number("margin", canvas.margin);
         const Path floor = where.key("floor");
         if (const NodeId floor_id = members.find("floor"); is_object(floor, floor_id)) {

@@ -9,7 +9,8 @@ namespace penumbra {
 
 inline constexpr std::string_view kSceneKeys[] = {"version", "canvas", "sky",   "shapes",
                                                   "lights",  "render", "output"};
-inline constexpr std::string_view kCanvasKeys[] = {"width", "height", "view", "margin", "floor"};
+inline constexpr std::string_view kCanvasKeys[] = {"width", "height", "view",
+                                                   "region", "margin", "floor"};
 inline constexpr std::string_view kFloorKeys[] = {"albedo"};
 inline constexpr std::string_view kSkyKeys[] = {"radiance", "gradient"};
 inline constexpr std::string_view kStopKeys[] = {"angle", "radiance"};
