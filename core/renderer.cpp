@@ -12,6 +12,7 @@
 
 #include "core/gl/context.h"
 #include "core/gl/loop_limit.h"
+#include "core/gl/storage_buffer.h"
 #include "core/gl/timer.h"
 #include "core/passes/cascade_pass.h"
 #include "core/passes/compose_pass.h"
@@ -25,6 +26,7 @@
 #include "core/passes/scene_buffers.h"
 #include "core/plan/plan.h"
 #include "core/plan/shape_lists.h"
+#include "glsl/cascade.h"
 
 namespace penumbra {
 namespace {
@@ -179,6 +181,7 @@ struct Renderer::Impl {
     std::thread::id thread = std::this_thread::get_id();
     gl::Context context;
     gl::PassTimer timer;
+    gl::StorageBuffer lost_rays{GL_R32UI, sizeof(std::uint32_t)};
     gl::TexturePool textures{kPoolBytes};
     DistancePass distance;
     JumpFloodPass jump_flood;
@@ -251,6 +254,12 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
     if (!plan.jump_steps.empty())
         record.pass("jump flood", plan.grid.size, [&] { return jump_flood.run(plan, settings, field); });
 
+    const bool marches = !plan.cascades.empty() || plan.hrc.active();
+    if (marches) {
+        const std::uint32_t none = 0;
+        lost_rays.write(0, &none, sizeof(none));
+        lost_rays.bind_storage(glsl::kLostRaysStorage);
+    }
     gl::Texture2D radiance;
     for (std::size_t level = plan.cascades.size(); level-- > 0;) {
         gl::Texture2D merged;
@@ -308,6 +317,11 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
     stats.width = plan.canvas.x;
     stats.height = plan.canvas.y;
     stats.gpu_bytes = plan.gpu_bytes + buffers.bytes();
+    if (marches) {
+        std::uint32_t lost = 0;
+        lost_rays.read(0, &lost, sizeof(lost));
+        stats.lost_rays = lost;
+    }
     stats.skipped = plan.skipped;
     if (lists.tiles.x > 0) stats.skipped.push_back(saved_by_lists(lists, packed, plan.grid));
     stats.total_ms = ms_since(start);
