@@ -31,7 +31,8 @@ struct PackedOutline {
 // `mean_intervals`, which tells how dear the scene is. Expects at most `most_pieces`, else `fits` is false.
 PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool survey, std::size_t most_pieces);
 
-// Two texels a node, one node more than `nodes`: the integral of the sky's radiance from angle 0 on, and its radiance.
+// Two texels a node, one node more than `nodes`: the integral of the sky's radiance from angle 0 on; its radiance and, in a, a
+// number of the part between two of its steps.
 std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scale);
 
 }  // namespace penumbra
