@@ -13,5 +13,7 @@ void main() {
     ivec2 pixel = texel + ivec2(0, params.first_row);
     if (pixel.x >= params.extent.x || pixel.y >= params.extent.y) return;
     bool solid = params.has_shapes != 0 && pixel_distance(pixel) <= 0.0;
-    imageStore(linear_image, texel, vec4(solid ? solid_radiance(pixel) : floor_radiance(pixel), 1.0));
+    vec3 radiance = solid ? solid_radiance(pixel) : floor_radiance(pixel);
+    // A scene may hold negative zeros, the picture none.
+    imageStore(linear_image, texel, vec4(mix(radiance, vec3(0.0), equal(radiance, vec3(0.0))), 1.0));
 }
