@@ -259,6 +259,43 @@ TEST(Walls, AClosedWallOfOnePixelHoldsAllLightAtAnyAngle) {
     }
 }
 
+// A wall with a gap narrower than any cell or lattice: the beam behind it is there.
+TEST(Walls, ABeamThroughANarrowGapIsNotMissed) {
+    const int steps = scale() > 1 ? 36 : 4;
+    for (const double gap : {0.3, 1.0, 3.0})
+        for (const double lamp : {2.0, 12.0})
+            for (int i = 0; i < steps; ++i) {
+                Motion m;
+                m.turned_deg = 360.0 * i / steps + 7;
+                m.centre = {48, 48};
+                Scene scene = canvas(96, 96);
+                scene.shapes = moved({shape(Circle{{46.3, 16}, lamp}, Colour(1)), shape(Rect{{48 - 50 - 0.5 * gap, 36}, {100, 2}, 0, 0}),
+                                      shape(Rect{{48 + 50 + 0.5 * gap, 36}, {100, 2}, 0, 0})}, m);
+                const ImageF truth = truth_of(scene);
+                double most = 0;
+                Motion behind;  // its half of the view
+                behind.turned_deg = -m.turned_deg;
+                behind.centre = m.centre;
+                const auto is_behind = [&](std::size_t k) {
+                    return behind({double(k / 3 % 96) + 0.5, double(k / 3 / 96) + 0.5}).y > 37;
+                };
+                for (std::size_t k = 0; k < truth.data.size(); ++k)
+                    if (std::isfinite(truth.data[k]) && is_behind(k)) most = std::max(most, double(truth.data[k]));
+                for (const Way& way : all_ways()) {
+                    const ImageF picture = render_linear(as(scene, way));
+                    double lit = 0, missed = 0;
+                    for (std::size_t k = 0; k < truth.data.size(); ++k) {
+                        const double b = double(truth.data[k]);
+                        if (!std::isfinite(b) || b < 0.02 * most || !is_behind(k)) continue;
+                        ++lit;
+                        if (double(picture.data[k]) < 0.1 * b) ++missed;
+                    }
+                    hold("narrow gaps", way, "share of the beam missed", lit > 0 ? missed / lit : 0,
+                         text("gap of ", gap, " px, lamp of ", lamp, " px, turned by ", m.turned_deg, " degrees"));
+                }
+            }
+}
+
 // A wall between a lamp and the rest of the view, of every width and angle, on the grid and off it.
 TEST(Walls, OfAnyWidthAndAngleCastTheirShadow) {
     const int steps = scale() > 1 ? 180 : 12;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -83,7 +84,8 @@ void hunt(const char* law, const std::function<Scene(std::uint64_t)>& make, std:
     for (int i = 0; i < count && failures < 5; ++i) {
         const std::uint64_t seed = first + std::uint64_t(i);
         const Scene scene = make(seed);
-        const std::string name = std::string(law) + " scene " + std::to_string(seed);
+        const std::string name = std::string(law) + " " + std::to_string(seed);
+        const auto started = std::chrono::steady_clock::now();
         ASSERT_TRUE(validate(scene).empty()) << name;
         const ImageF truth = truth_of(scene);
         // Standard always; draft and high by turns.
@@ -101,6 +103,9 @@ void hunt(const char* law, const std::function<Scene(std::uint64_t)>& make, std:
                 ADD_FAILURE() << name << ", " << to_string(way) << ": " << wrong << "\nshrunk to " << path;
             }
         }
+        // Long renders are worth knowing.
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+        if (seconds > 5) std::printf("%s took %.0f s, %zu shapes\n", name.c_str(), seconds, scene.shapes.size());
         // What `auto` takes, it takes whole.
         const RenderResult chosen = shared_renderer().render([&] {
             Scene s = as(scene, {"auto", Quality::standard});
