@@ -7,11 +7,11 @@ layout(binding = kCascadeDistanceUnit) uniform sampler2D distance_texture;
 layout(binding = kCascadeMaterialUnit) uniform isampler2D material_texture;
 
 // Rays that ran out of steps count as blocked, and are counted.
-layout(std430, binding = kLostRaysStorage) buffer LostRays { uint all_lost_rays; };
+layout(std430, binding = kLostRaysStorage) buffer LostRayCounters { uint lost_ray_counts[]; };
 uint lost_rays = 0u;  // of this invocation
 
 void report_lost_rays() {
-    if (lost_rays > 0u) atomicAdd(all_lost_rays, lost_rays);
+    if (lost_rays > 0u) atomicAdd(lost_ray_counts[0], lost_rays);
 }
 
 const int kRayPassed = 0;   // free to its end

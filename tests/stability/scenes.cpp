@@ -65,20 +65,22 @@ std::vector<Shape> lamps_and_walls(Point centre, double unit) {
 
 namespace {
 
-// Few, since llvmpipe compiles every program once more for textures whose sides are powers of two.
-constexpr int kSides[] = {1, 16, 31, 47};
+// Few sizes, since llvmpipe compiles every program anew for textures of one texel or whose sides are powers of two.
+constexpr int kSizes[][2] = {{47, 31}, {31, 47}, {47, 31}, {45, 45}, {45, 45}, {16, 16}, {1, 31}, {1, 1}};
+constexpr double kMargins[] = {3.7, 18, 52.3};
 
 class Maker {
 public:
     Maker(std::uint64_t seed, bool wild) : n_(seed * 7919 + (wild ? 3 : 11)), wild_(wild) {}
 
     Scene make() {
-        Scene scene = canvas(side(), side());
+        const auto& size = kSizes[static_cast<std::size_t>(n_.next() * 8)];
+        Scene scene = wild_ ? canvas(size[0], size[1]) : canvas(41, 41);
         width_ = scene.canvas.width;
         height_ = scene.canvas.height;
         if (one_in(3)) scene.sky.radiance = light();
         else if (one_in(4)) scene.sky = gradient();
-        if (one_in(4)) scene.canvas.margin = n_.between(0, wild_ ? 60 : 20);
+        if (one_in(4)) scene.canvas.margin = kMargins[static_cast<std::size_t>(n_.next() * (wild_ ? 3 : 2))];
         reach_ = scene.canvas.margin + 6;
         const int count = 1 + static_cast<int>(std::pow(n_.next(), 2) * (wild_ && one_in(6) ? 120 : 14));
         for (int i = 0; i < count; ++i) add(scene);
@@ -107,7 +109,6 @@ public:
 
 private:
     bool one_in(int times) { return n_.next() * times < 1; }
-    int side() { return wild_ ? kSides[static_cast<std::size_t>(std::sqrt(n_.next()) * 4)] : 41; }
 
     Colour light() {
         Colour c{n_.between(0, 2), n_.between(0, 2), n_.between(0, 2)};
