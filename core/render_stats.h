@@ -35,6 +35,7 @@ struct RenderStats {
     int height = 0;
     double total_ms = 0;      // from the scene to the pixels
     std::uint64_t gpu_bytes = 0;
+    std::uint64_t lost_rays = 0;  // marches that ran out of steps: taken as blocked
     std::vector<PassStats> passes;
     std::vector<SkippedWork> skipped;
 };

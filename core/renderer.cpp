@@ -12,6 +12,7 @@
 
 #include "core/gl/context.h"
 #include "core/gl/loop_limit.h"
+#include "core/gl/storage_buffer.h"
 #include "core/gl/timer.h"
 #include "core/passes/cascade_pass.h"
 #include "core/passes/compose_pass.h"
@@ -28,6 +29,7 @@
 #include "core/plan/shape_lists.h"
 #include "core/plan/skip.h"
 #include "core/scene/lower.h"
+#include "glsl/cascade.h"
 
 namespace penumbra {
 namespace {
@@ -196,6 +198,7 @@ struct Renderer::Impl {
     std::thread::id thread = std::this_thread::get_id();
     gl::Context context;
     gl::PassTimer timer;
+    gl::StorageBuffer lost_rays{GL_R32UI, sizeof(std::uint32_t)};
     gl::TexturePool textures{kPoolBytes};
     DistancePass distance;
     JumpFloodPass jump_flood;
@@ -310,6 +313,12 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     if (!plan.jump_steps.empty())
         record.pass("jump flood", plan.grid.size, [&] { return jump_flood.run(plan, settings, field); });
 
+    const bool marches = !plan.cascades.empty() || plan.hrc.active();
+    if (marches) {
+        const std::uint32_t none = 0;
+        lost_rays.write(0, &none, sizeof(none));
+        lost_rays.bind_storage(glsl::kLostRaysStorage);
+    }
     gl::Texture2D radiance;
     for (std::size_t level = plan.cascades.size(); level-- > 0;) {
         gl::Texture2D merged;
@@ -369,6 +378,11 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         for (const PassStats& pass : stats.passes) points += double(pass.points);
         const double pixels = double(plan.lit.size.x) * plan.lit.size.y;
         if (points < pixels) stats.skipped.push_back({"points", "the corners of a cell tell all of it", pixels - points});
+    }
+    if (marches) {
+        std::uint32_t lost = 0;
+        lost_rays.read(0, &lost, sizeof(lost));
+        stats.lost_rays = lost;
     }
     if (lists.tiles.x > 0) stats.skipped.push_back(saved_by_lists(lists, packed, plan.grid));
     stats.total_ms = ms_since(start);

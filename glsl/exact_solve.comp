@@ -130,6 +130,12 @@ void add_sky(bvec4 which, vec4 a, vec4 b, vec4 weight, out vec4 r, out vec4 g, o
     bl = vec4(h0.b, h1.b, h2.b, h3.b);
 }
 
+uint sky_part(float angle) {
+    float x = angle / kTwoPi;
+    int node = min(int((x - floor(x)) * float(params.sky_nodes)), params.sky_nodes - 1);
+    return uint(texelFetch(sky_nodes, 2 * node + 1).a);
+}
+
 vec4 normal_x, normal_y;  // of surfaces' points
 
 // The integral of the cosine from the normal's right up to a key; behind the surface it does not change.
@@ -267,7 +273,15 @@ void change(bvec4 changed, float sector_angle) {
         g = pick(g, sg, found);
         b = pick(b, sb, found);
     }
+    // Which edge it is: between which two pieces; beside the sky also in which part of it, since a step changes the slope.
     uvec4 id = uvec4(pick(vec4(1.0), vec4(l0.a, l1.a, l2.a, l3.a) + 2.0, found));
+    if (kSky == 2 && kSlopes != 0) {
+        vec4 toward = sector_angle + arctangent(now);
+        uvec4 part = 1u + (uvec4(sky_part(toward.x), sky_part(toward.y), sky_part(toward.z), sky_part(toward.w)) << 22);
+        id = uvec4(found.x ? id.x : part.x, found.y ? id.y : part.y, found.z ? id.z : part.z, found.w ? id.w : part.w);
+        bvec4 sky_before = equal(top, vec4(kNone));
+        top_id = uvec4(sky_before.x ? part.x : top_id.x, sky_before.y ? part.y : top_id.y, sky_before.z ? part.z : top_id.z, sky_before.w ? part.w : top_id.w);
+    }
     vec4 end_depth = vec4(1.0);
     vec4 clearance = vec4(kFar);
     if (kSlopes != 0) {

@@ -15,6 +15,7 @@ layout(binding = kExactLeafImage, r32ui) uniform uimage2D leaf_image;
 layout(std430, binding = kExactPointsStorage) writeonly buffer Points { uint out_points[]; };
 layout(std430, binding = kExactCountersStorage) buffer Counters { uint counters[]; };
 layout(binding = kExactSkyUnit) uniform samplerBuffer mean_light;
+layout(binding = kExactHeadsUnit) uniform usamplerBuffer heads;
 
 float largest(vec3 c) { return max(c.r, max(c.g, c.b)); }
 
@@ -89,6 +90,18 @@ void main() {
         vec3 off = max(max(abs(v1.rgb - v0.rgb - reach * (x0.rgb + x1.rgb)), abs(v3.rgb - v2.rgb - reach * (x2.rgb + x3.rgb))),
                        max(abs(v2.rgb - v0.rgb - reach * (y0.rgb + y2.rgb)), abs(v3.rgb - v1.rgb - reach * (y1.rgb + y3.rgb))));
         split = split || 0.5 * largest(off) > relative_to;
+    }
+    // All dark: then a beam through a gap narrower than the cell may fall between the corners. Not where no point of the tile
+    // can see any light.
+    if (brightest <= 0.0) {
+        ivec2 tile = corner / kExactTile;
+        int list = (tile.y * params.tiles.x + tile.x) * params.sectors;
+        for (int s = split ? params.sectors : 0; s < params.sectors; ++s) {
+            if (texelFetch(heads, list + s).x != kExactDark) {
+                split = true;
+                break;
+            }
+        }
     }
     if (!split) return;
 

@@ -14,5 +14,7 @@ void main() {
     if (texel.x >= size.x || texel.y >= size.y) return;
     ivec2 pixel = texel + params.first_pixel;
     bool solid = params.has_shapes != 0 && pixel_distance(pixel) <= 0.0;
-    imageStore(linear_image, texel, vec4(solid ? solid_radiance(pixel) : floor_radiance(pixel), 1.0));
+    vec3 radiance = solid ? solid_radiance(pixel) : floor_radiance(pixel);
+    // A scene may hold negative zeros, the picture none.
+    imageStore(linear_image, texel, vec4(mix(radiance, vec3(0.0), equal(radiance, vec3(0.0))), 1.0));
 }

@@ -404,6 +404,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             points_.bind_storage(glsl::kExactPointsStorage);
             counters_.bind_storage(glsl::kExactCountersStorage);
             means_.bind_texture(glsl::kExactSkyUnit);
+            heads_.bind_texture(glsl::kExactHeadsUnit);
             glsl::ExactParams p = params;
             p.ask_first = ask_first ? 1 : 0;
             p.cell = glsl::kExactCell >> level;

@@ -183,6 +183,7 @@ PassWork HrcPass::finish(const Plan& plan, const DistanceField& field, const gl:
     params.extent = plan.canvas;
     out = settings.take(format(plan), plan.canvas);
     field.distance.bind_texture(glsl::kHrcDistanceUnit);
+    field.material.bind_texture(glsl::kCascadeMaterialUnit);
     sum.bind_texture(glsl::kHrcSumUnit);
     out.bind_image(glsl::kHrcImageBinding, GL_WRITE_ONLY);
     PassWork work;

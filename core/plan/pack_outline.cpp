@@ -219,11 +219,11 @@ double survey_intervals(const Scene& scene, const reference::Boundary& boundary)
     return points > 0 ? intervals / points : 0;
 }
 
-// Extent (world units) of the smallest body, of those that emit or of all.
-double smallest_body(const reference::Boundary& boundary, bool only_lights) {
+// Extent (world units) of the smallest light: of what is seen of each body.
+double smallest_light(const reference::Boundary& boundary) {
     std::map<int, reference::Box> boxes;
     for (const Piece& piece : boundary.pieces()) {
-        if (only_lights && boundary.material_of(piece).emission == Colour(0)) continue;
+        if (boundary.material_of(piece).emission == Colour(0)) continue;
         const reference::Box box = piece.box();
         reference::Box& all = boxes[piece.body];
         all.add(box.low);
@@ -232,6 +232,24 @@ double smallest_body(const reference::Boundary& boundary, bool only_lights) {
     double smallest = std::numeric_limits<double>::infinity();
     for (const auto& [body, box] : boxes) smallest = std::min(smallest, std::max(box.high.x - box.low.x, box.high.y - box.low.y));
     return boxes.empty() ? 0 : smallest;
+}
+
+// Extent (world units) of the smallest shape of which anything is seen: all of it, since what hides a part of it hides as much.
+double smallest_body(const reference::Boundary& boundary) {
+    std::map<int, reference::Box> boxes;
+    for (const reference::Body& body : boundary.bodies()) {
+        reference::Box& all = boxes[body.shape];
+        all.add(body.box.low);
+        all.add(body.box.high);
+    }
+    std::set<int> seen;
+    for (const Piece& piece : boundary.pieces()) seen.insert(boundary.bodies()[std::size_t(piece.body)].shape);
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const int shape : seen) {
+        const reference::Box& box = boxes[shape];
+        smallest = std::min(smallest, std::max(box.high.x - box.low.x, box.high.y - box.low.y));
+    }
+    return seen.empty() ? 0 : smallest;
 }
 
 }  // namespace
@@ -247,8 +265,8 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
     Corners corners(frame);
     const double scale = frame.pixels_per_unit;
     const auto vec = [](glm::dvec2 a, glm::dvec2 b) { return glm::vec4(glm::vec2(a), glm::vec2(b)); };
-    out.smallest_light = smallest_body(boundary, true) * scale;
-    out.smallest_body = smallest_body(boundary, false) * scale;
+    out.smallest_light = smallest_light(boundary) * scale;
+    out.smallest_body = smallest_body(boundary) * scale;
     if (survey) out.mean_intervals = survey_intervals(scene, boundary);
     // Elements lie on what can be seen: nothing is taken whole that is not.
     const WholeCircles whole = reflecting ? WholeCircles() : WholeCircles(boundary);
@@ -298,12 +316,25 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
 
 std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scale) {
     const reference::SkyIntegral integral(sky);
+    // Which of the sky's parts between its steps each direction lies in. A single step needs a second border, at angle 0, to
+    // have two parts.
+    std::vector<double> steps;
+    for (std::size_t i = 0; i < sky.gradient.size(); ++i) {
+        const SkyStop& stop = sky.gradient[i];
+        const SkyStop& next = sky.gradient[(i + 1) % sky.gradient.size()];
+        const double turn = i + 1 < sky.gradient.size() ? 0 : 360;
+        if (next.angle_deg + turn == stop.angle_deg && next.radiance != stop.radiance) steps.push_back(std::fmod(stop.angle_deg, 360.0));
+    }
+    const auto part = [&](double degrees) {
+        const auto before = std::count_if(steps.begin(), steps.end(), [&](double at) { return at <= degrees; });
+        return static_cast<float>(steps.size() > 1 ? before % std::ptrdiff_t(steps.size()) : before);
+    };
     std::vector<glm::vec4> table;
     const double step = 2 * std::numbers::pi / nodes;
     Colour sum(0);
     for (int i = 0; i <= nodes; ++i) {
         table.push_back(glm::vec4(glm::vec3(sum / radiance_scale), 0.0f));
-        table.push_back(glm::vec4(glm::vec3(integral.radiance(i * step) / radiance_scale), 0.0f));
+        table.push_back(glm::vec4(glm::vec3(integral.radiance(i * step) / radiance_scale), part(360.0 * (i % nodes) / nodes)));
         sum += integral.integral(i * step, step);
     }
     return table;

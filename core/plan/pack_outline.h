@@ -34,7 +34,8 @@ struct PackedOutline {
 // With `reflecting`, pieces with an albedo shine as well, and `surfaces` is filled.
 PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool survey, std::size_t most_pieces, bool reflecting = false);
 
-// Two texels a node, one node more than `nodes`: the integral of the sky's radiance from angle 0 on, and its radiance.
+// Two texels a node, one node more than `nodes`: the integral of the sky's radiance from angle 0 on; its radiance and, in a, a
+// number of the part between two of its steps.
 std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scale);
 
 }  // namespace penumbra
