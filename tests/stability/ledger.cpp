@@ -93,7 +93,8 @@ void hold(const std::string& law, const std::string& who, const std::string& fig
     const std::string key = law + "/" + who + "/" + figure;
     const auto bound = bounds().find(key);
     const bool known = bound != bounds().end();
-    worst.bound = known ? bound->get<double>() : 0.0;
+    // Ten times the scenes find worse ones.
+    worst.bound = (known ? bound->get<double>() : 0.0) * (scale() > 1 ? 2 : 1);
     // Also when it is no number.
     if (worst.cases == 1 || !(value <= worst.value)) {
         worst.value = value;
