@@ -450,8 +450,20 @@ TEST(Pack, ThinShapesAreFattenedAndTheirLightScaledDown) {
         const double fat = half + double(texel(packed, shape, 0).y);
         EXPECT_NEAR(fat, half + thin_shape_growth(half), 1e-7);
         EXPECT_GE(fat, 0.125) << "half of the shortest step";
-        EXPECT_NEAR(double(texel(packed, shape, 1).w), half / fat, 1e-6);
+        // By what the outline has grown in length: a disc's as its radius, a stroke's hardly.
+        const double around = 2 * std::numbers::pi * half + (shape == 1 ? 16 * std::sqrt(2.0) : 0.0);
+        EXPECT_NEAR(double(texel(packed, shape, 1).w), around / (around + 2 * std::numbers::pi * (fat - half)), 1e-6);
     }
+}
+
+TEST(Pack, SliversOfPolygonsAreFattenedAndThickOnesAreNot) {
+    Scene scene = scene_of(40, 40);
+    scene.shapes = {shape_of(Polygon{{{1, 1}, {31, 1}, {31, 1.004}}}), shape_of(Polygon{{{1, 10}, {31, 10}, {31, 20}}})};
+    const PackedScene packed = pack_scene(scene, 1);
+    EXPECT_NEAR(texel(packed, 0, 0).y, 0.125, 2e-3);
+    EXPECT_GT(texel(packed, 0, 1).w, 0.97f);
+    EXPECT_EQ(texel(packed, 1, 0).y, 0);
+    EXPECT_EQ(texel(packed, 1, 1).w, 1);
 }
 
 // ---- sky ----------------------------------------------------------------------------------------
