@@ -44,6 +44,8 @@ void add_config_options(CLI::App& command, Config& config) {
     option("--connections", config.spare_http_threads, "PENUMBRA_CONNECTIONS",
            "Connections served beside those that wait for a render")
         ->check(whole_number(2, 1000));
+    option("--cache-bytes", config.cache_bytes, "PENUMBRA_CACHE_BYTES", "Bytes of pictures kept to be given again; 0 keeps none")
+        ->check(whole_number(0, 1L << 46));
     command
         .add_option_function<std::string>(
             "--log",

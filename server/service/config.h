@@ -44,6 +44,9 @@ struct Config {
     // Longer than the idle time of common load balancers (60 s), so that they close first.
     int keep_alive_s = 75;
 
+    // Pictures kept to be given again; 0 keeps none. A 512 x 512 PNG has 0.1 to 0.5 MB: some thousand of them.
+    std::size_t cache_bytes = 256u << 20;
+
     LogFormat log_format = LogFormat::text;
 };
 

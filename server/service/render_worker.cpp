@@ -45,15 +45,20 @@ std::optional<RenderWorker::Refusal> RenderWorker::refusal() const {
 
 RenderWorker::Ticket RenderWorker::submit(std::shared_ptr<const Scene> scene) {
     Ticket ticket;
+    auto promise = std::make_shared<std::promise<RenderOutcome>>();
+    ticket.outcome = promise->get_future();
+    ticket.refusal = submit(std::move(scene), [promise](RenderOutcome outcome) { promise->set_value(std::move(outcome)); });
+    return ticket;
+}
+
+std::optional<RenderWorker::Refusal> RenderWorker::submit(std::shared_ptr<const Scene> scene, Done done) {
     {
         const std::lock_guard lock(mutex_);
-        ticket.refusal = refusal_locked();
-        if (ticket.refusal) return ticket;
-        queue_.push_back({std::move(scene), {}, Clock::now()});
-        ticket.outcome = queue_.back().promise.get_future();
+        if (const auto refusal = refusal_locked()) return refusal;
+        queue_.push_back({std::move(scene), std::move(done), Clock::now()});
     }
     changed_.notify_all();
-    return ticket;
+    return std::nullopt;
 }
 
 RenderWorker::Status RenderWorker::status() const {
@@ -172,7 +177,7 @@ void RenderWorker::run(const BackendFactory& factory) {
             outcome.error = "the renderer is not ready: " + status().reason;
         }
         outcome.wait_ms = wait_ms;
-        job.promise.set_value(std::move(outcome));
+        job.done(std::move(outcome));
     }
     backend_.reset();
 }

@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -52,10 +53,13 @@ public:
 
     struct Ticket {
         std::optional<Refusal> refusal;
-        std::future<RenderOutcome> outcome;  // valid exactly without a refusal
+        std::future<RenderOutcome> outcome;  // never comes after a refusal
     };
     // Never waits. The scene has passed validation.
     Ticket submit(std::shared_ptr<const Scene> scene);
+    // The same; `done` is called on the worker's thread, once, unless it is refused. It must not take long.
+    using Done = std::function<void(RenderOutcome)>;
+    std::optional<Refusal> submit(std::shared_ptr<const Scene> scene, Done done);
 
     // Whether submit() would refuse now: asked before the work of parsing a scene.
     std::optional<Refusal> refusal() const;
@@ -71,7 +75,7 @@ public:
 private:
     struct Job {
         std::shared_ptr<const Scene> scene;
-        std::promise<RenderOutcome> promise;
+        Done done;
         std::chrono::steady_clock::time_point since;
     };
 

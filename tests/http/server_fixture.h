@@ -20,6 +20,11 @@ inline const std::string kScene =
     R"({"version": 1, "canvas": {"width": 40, "height": 30}, "sky": {"radiance": 0.5}})";
 inline const char* const kJson = "application/json";
 
+// One of many scenes that render alike and have nothing else in common.
+inline std::string scene_number(int n) {
+    return R"({"version": 1, "canvas": {"width": 40, "height": 30, "margin": )" + std::to_string(n) + "}}";
+}
+
 class Service {
 public:
     explicit Service(Config config = {}, std::shared_ptr<FakeControl> the_control = std::make_shared<FakeControl>())
