@@ -12,6 +12,7 @@
 
 #include "core/gl/context.h"
 #include "core/gl/loop_limit.h"
+#include "core/gl/settle.h"
 #include "core/gl/timer.h"
 #include "core/passes/cascade_pass.h"
 #include "core/passes/compose_pass.h"
@@ -139,6 +140,7 @@ private:
 struct Renderer::Impl {
     explicit Impl(const RendererOptions& options)
         : context(options.device),
+          samplers(options.shader_dir),
           distance(options.shader_dir),
           jump_flood(options.shader_dir),
           cascade(options.shader_dir),
@@ -178,6 +180,7 @@ struct Renderer::Impl {
 
     std::thread::id thread = std::this_thread::get_id();
     gl::Context context;
+    gl::SamplerSettler samplers;
     gl::PassTimer timer;
     gl::TexturePool textures{kPoolBytes};
     DistancePass distance;
@@ -236,6 +239,7 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
     const bool linear = scene.output.format != "png";
     const Plan plan = make_plan(scene, limits, not_exact);
     const PackedScene packed = pack_scene(scene, plan.radiance_scale);
+    samplers.settle();
     const SceneBuffers buffers(packed, scene.sky, plan);
     buffers.bind();
     Recorder record(timer);

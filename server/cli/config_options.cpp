@@ -48,6 +48,17 @@ void add_config_options(CLI::App& command, Config& config) {
         ->check(whole_number(0, 1L << 46));
     command
         .add_option_function<std::string>(
+            "--warm-up",
+            [&config](const std::string& word) {
+                config.warm_up = same_letters(word, "none") ? WarmUp::none
+                                 : same_letters(word, "all") ? WarmUp::all
+                                                             : WarmUp::common;
+            },
+            "Programs compiled before it is ready: none, common or all [common]")
+        ->envname("PENUMBRA_WARM_UP")
+        ->check(one_of({"none", "common", "all"}));
+    command
+        .add_option_function<std::string>(
             "--log",
             [&config](const std::string& word) {
                 config.log_format = same_letters(word, "json") ? LogFormat::json : LogFormat::text;

@@ -410,7 +410,7 @@ struct HttpServer::Impl {
         if (rendered.source != Source::cache) {
             timing = timing_entry("queue", rendered.queue_ms) + ", " + timing_entry("parse", rendered.parse_ms) + ", ";
             for (const PassStats& pass : answer.stats.passes) timing += timing_entry(pass.name, pass.wall_ms) + ", ";
-            timing += timing_entry("encode", answer.encode_ms) + ", ";
+            timing += timing_entry("render", answer.stats.total_ms) + ", " + timing_entry("encode", answer.encode_ms) + ", ";
         }
         timing += timing_entry("total", ms_since(GuardedServer::exchange().start));
         response.set_header("Server-Timing", timing);
