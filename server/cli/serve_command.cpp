@@ -50,7 +50,7 @@ int serve(const Config& config, const Engine& engine) {
 
     const Log log(config.log_format);
     RenderWorker worker([&] { return engine.make_backend({.device = config.device, .shader_dir = {}}); },
-                        config.queue_capacity, log);
+                        config.queue_capacity, log, warm_up_scenes(config.warm_up));
     RenderService service(worker, engine.unsupported, config);
     HttpServer server(service, config, log);
     if (const std::string why = server.start(); !why.empty()) {

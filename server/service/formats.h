@@ -40,6 +40,9 @@ struct FormatWishes {
 FormatWishes any_format();
 FormatWishes only_format(std::string_view name);
 
+// One that differs tells other wishes apart: "png;q=1.000, pfm;q=0.500, *;q=1.000".
+std::string to_string(const FormatWishes& wishes);
+
 // The renderer gives 8-bit pixels or linear ones as the scene's output.format asks.
 Bytes encode_picture(const RenderResult& result);
 
