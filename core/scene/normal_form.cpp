@@ -116,8 +116,8 @@ public:
         put_all(width, height, canvas.region_or_all(), canvas.view_or_default(), margin, floor);
     }
     void put(const RenderSettings& render) {
-        const auto& [method, quality, bounces, converged, tolerance, skip, view] = render;
-        put_all(method, quality, bounces, converged, tolerance, skip, view);
+        const auto& [method, quality, bounces, converged, tolerance, skip, keep, view] = render;
+        put_all(method, quality, bounces, converged, tolerance, skip, keep, view);
     }
     void put(const OutputSettings& output) {
         const auto& [format, depth, antialias, solids, exposure, tonemap] = output;
