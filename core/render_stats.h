@@ -18,6 +18,7 @@ struct PassStats {
     std::uint64_t rays = 0;  // rays (intervals) traced
     std::uint64_t bytes = 0; // what it writes
     double cpu_ms = 0;     // processor time of all threads of the process meanwhile
+    std::uint64_t points = 0;  // solved by the method `exact`
 };
 
 struct SkippedWork {

@@ -16,6 +16,7 @@
 #include "core/gl/timer.h"
 #include "core/passes/cascade_pass.h"
 #include "core/passes/compose_pass.h"
+#include "core/passes/delta_pass.h"
 #include "core/passes/distance_pass.h"
 #include "core/passes/exact_pass.h"
 #include "core/passes/hrc_pass.h"
@@ -26,6 +27,8 @@
 #include "core/passes/scene_buffers.h"
 #include "core/plan/plan.h"
 #include "core/plan/shape_lists.h"
+#include "core/plan/skip.h"
+#include "core/scene/lower.h"
 #include "glsl/cascade.h"
 
 namespace penumbra {
@@ -64,6 +67,7 @@ public:
         stats.dispatches += static_cast<std::uint64_t>(work.dispatches);
         stats.rays += work.rays;
         stats.bytes += work.bytes;
+        stats.points += work.points;
         marked_.push_back(static_cast<std::size_t>(&stats - passes_.data()));
     }
 
@@ -136,6 +140,17 @@ private:
     std::variant<Image8, ImageF> picture_;
 };
 
+// A picture of one pixel, as large as this.
+template <class T>
+BasicImage<T> filled(const BasicImage<T>& pixel, glm::ivec2 size) {
+    BasicImage<T> picture(size.x, size.y, pixel.channels);
+    if (std::all_of(pixel.data.begin(), pixel.data.end(), [](T value) { return value == T(0); })) return picture;
+    const std::size_t row = static_cast<std::size_t>(size.x) * pixel.data.size();
+    for (std::size_t i = 0; i < row; i += pixel.data.size()) std::copy(pixel.data.begin(), pixel.data.end(), picture.data.begin() + static_cast<std::ptrdiff_t>(i));
+    for (int y = 1; y < size.y; ++y) std::copy_n(picture.at(0, 0), row, picture.at(0, y));
+    return picture;
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -149,6 +164,7 @@ struct Renderer::Impl {
           hrc(options.shader_dir),
           reference(options.shader_dir),
           exact(options.shader_dir),
+          delta(options.shader_dir),
           compose(options.shader_dir) {
         const gl::ContextInfo& gl_info = context.info();
         info.kind = gl_info.software ? "cpu" : "gpu";
@@ -172,6 +188,7 @@ struct Renderer::Impl {
     }
 
     RenderResult render(const Scene& scene, const std::string& not_exact = {});
+    std::variant<Image8, ImageF> constant_picture(const Plan& plan, const Scene& scene, bool linear, Recorder& record);
     gl::Texture2D render_hrc(const Plan& plan, const DistanceField& field, Recorder& record);
     void check_thread() const {
         if (std::this_thread::get_id() != thread)
@@ -191,6 +208,7 @@ struct Renderer::Impl {
     HrcPass hrc;
     ReferencePass reference;
     ExactPass exact;
+    DeltaPass delta;
     ComposePass compose;
     DeviceInfo info;
     DeviceLimits limits;
@@ -233,24 +251,65 @@ gl::Texture2D Renderer::Impl::render_hrc(const Plan& plan, const DistanceField& 
 }
 // ---- end of hrc
 
+// One pixel as the device composes it, for all.
+std::variant<Image8, ImageF> Renderer::Impl::constant_picture(const Plan& plan, const Scene& scene, bool linear, Recorder& record) {
+    gl::Texture2D pixel(linear ? GL_RGBA32F : GL_RGBA8, {1, 1});
+    record.pass("compose", {1, 1}, [&] {
+        const glm::vec4 mean(glm::vec3(*plan.constant), 1.0f);
+        gl::Texture2D radiance(GL_RGBA32F, {1, 1});
+        radiance.fill(GL_RGBA, GL_FLOAT, &mean);
+        Scene open;  // no shape shows
+        open.canvas.floor_albedo = scene.canvas.floor_albedo;
+        open.output = scene.output;
+        gl::Texture2D lights(GL_RGBA32F, {1, 1});
+        const float black[4] = {};
+        lights.fill(GL_RGBA, GL_FLOAT, black);
+        return compose.run(plan, open, linear, radiance, lights, DistancePass::empty_field(plan), settings, 0, pixel);
+    });
+    Reader reader({1, 1}, linear);
+    record.host("read", {1, 1}, [&] { reader.read(pixel, 0); });
+    std::variant<Image8, ImageF> result;
+    record.host("fill", plan.shown.size, [&] {
+        result = std::visit([&](const auto& one) -> std::variant<Image8, ImageF> { return filled(one, plan.shown.size); }, reader.take());
+    });
+    return result;
+}
+
 // The frame, in the order in which it happens.
-RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_exact) {
+RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_exact) {
     const Clock::time_point start = Clock::now();
-    const bool linear = scene.output.format != "png";
+    const bool linear = asked.output.format != "png";
+    RenderResult result;
+    RenderStats& stats = result.stats;
+    const std::optional<Scene> lean = without_unseen_shapes(asked, stats.skipped);
+    const Scene& scene = lean ? *lean : asked;
     const Plan plan = make_plan(scene, limits, not_exact);
+    stats.device = info.renderer;
+    stats.method = plan.method;
+    stats.method_reason = plan.method_reason;
+    stats.width = plan.shown.size.x;
+    stats.height = plan.shown.size.y;
+    stats.skipped.insert(stats.skipped.end(), plan.skipped.begin(), plan.skipped.end());
+    Recorder record(timer);
+    if (plan.constant) {
+        result.picture = constant_picture(plan, scene, linear, record);
+        context.check_reset();
+        stats.passes = record.finish();
+        stats.total_ms = ms_since(start);
+        return result;
+    }
     const PackedScene packed = pack_scene(scene, plan.radiance_scale);
     const SceneBuffers buffers(packed, scene.sky, plan);
     buffers.bind();
-    Recorder record(timer);
 
     ShapeLists lists;
-    if (plan.list_shapes) record.host("shape lists", plan.grid.size, [&] { lists = list_shapes(packed, plan.grid); });
+    if (plan.list_shapes) record.host("shape lists", plan.grid.size, [&] { lists = list_shapes(packed, plan.grid, plan.first_distance_row, plan.end_distance_row); });
 
     DistanceField field;
     if (plan.shape_slices.empty())
         field = DistancePass::empty_field(plan);
     else
-        record.pass("distance", plan.grid.size, [&] { return distance.run(plan, lists, settings, field); });
+        record.pass("distance", {plan.grid.size.x, plan.end_distance_row - plan.first_distance_row}, [&] { return distance.run(plan, lists, settings, field); });
     if (!plan.jump_steps.empty())
         record.pass("jump flood", plan.grid.size, [&] { return jump_flood.run(plan, settings, field); });
 
@@ -272,35 +331,37 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
         radiance = std::move(merged);
     }
     if (plan.reference.rays > 0)
-        record.pass("reference", plan.canvas,
+        record.pass("reference", plan.lit.size,
                     [&] { return reference.run(plan, scene.sky, buffers, field, settings, radiance); });
     if (plan.exact.used)
-        exact.run(plan, scene.sky, field, settings,
+        exact.run(plan, scene.sky, field, settings, delta,
                   [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, radiance);
     if (plan.hrc.active()) radiance = render_hrc(plan, field, record);
     if (plan.resolve)
-        record.pass("resolve", plan.canvas, [&] {
+        record.pass("resolve", plan.lit.size, [&] {
             gl::Texture2D resolved;
             const PassWork work = resolve.run(plan, radiance, settings, resolved);
             settings.give(std::move(radiance));
             radiance = std::move(resolved);
             return work;
         });
-    if (!radiance) {
-        // No light at all: one black texel stands for every pixel.
+    gl::Texture2D lights;
+    if (plan.delta.used()) record.pass("lights", plan.lit.size, [&] { return delta.pixels(plan, field, settings, lights); });
+    // Where there is no light one black texel stands for every pixel.
+    for (gl::Texture2D* texture : {&radiance, &lights}) {
+        if (*texture) continue;
         const float black[4] = {};
-        radiance = gl::Texture2D(GL_RGBA32F, {1, 1});
-        radiance.fill(GL_RGBA, GL_FLOAT, black);
+        *texture = gl::Texture2D(GL_RGBA32F, {1, 1});
+        texture->fill(GL_RGBA, GL_FLOAT, black);
     }
 
-    RenderResult result;
-    Reader reader(plan.canvas, linear);
-    for (int row = 0; row < plan.canvas.y; row += plan.band_rows) {
-        const int rows = std::min(plan.band_rows, plan.canvas.y - row);
-        gl::Texture2D band = settings.take(linear ? GL_RGBA32F : GL_RGBA8, {plan.canvas.x, rows});
-        record.pass("compose", {plan.canvas.x, rows},
-                    [&] { return compose.run(plan, scene, linear, radiance, field, settings, row, band); });
-        record.host("read", {plan.canvas.x, rows}, [&] { reader.read(band, row); });
+    Reader reader(plan.shown.size, linear);
+    for (int row = 0; row < plan.shown.size.y; row += plan.band_rows) {
+        const int rows = std::min(plan.band_rows, plan.shown.size.y - row);
+        gl::Texture2D band = settings.take(linear ? GL_RGBA32F : GL_RGBA8, {plan.shown.size.x, rows});
+        record.pass("compose", {plan.shown.size.x, rows},
+                    [&] { return compose.run(plan, scene, linear, radiance, lights, field, settings, row, band); });
+        record.host("read", {plan.shown.size.x, rows}, [&] { reader.read(band, row); });
         settings.give(std::move(band));
     }
     result.picture = reader.take();
@@ -308,21 +369,21 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
     settings.give(std::move(field.distance));
     settings.give(std::move(field.material));
     settings.give(std::move(radiance));
+    settings.give(std::move(lights));
 
-    RenderStats& stats = result.stats;
     stats.passes = record.finish();
-    stats.device = info.renderer;
-    stats.method = plan.method;
-    stats.method_reason = plan.method_reason;
-    stats.width = plan.canvas.x;
-    stats.height = plan.canvas.y;
     stats.gpu_bytes = plan.gpu_bytes + buffers.bytes();
+    if (plan.exact.used && plan.exact.settings.largest_cell > 1) {
+        double points = 0;
+        for (const PassStats& pass : stats.passes) points += double(pass.points);
+        const double pixels = double(plan.lit.size.x) * plan.lit.size.y;
+        if (points < pixels) stats.skipped.push_back({"points", "the corners of a cell tell all of it", pixels - points});
+    }
     if (marches) {
         std::uint32_t lost = 0;
         lost_rays.read(0, &lost, sizeof(lost));
         stats.lost_rays = lost;
     }
-    stats.skipped = plan.skipped;
     if (lists.tiles.x > 0) stats.skipped.push_back(saved_by_lists(lists, packed, plan.grid));
     stats.total_ms = ms_since(start);
     return result;
@@ -341,7 +402,10 @@ Renderer::~Renderer() {
 
 const DeviceInfo& Renderer::device() const { return impl_->info; }
 
-RenderResult Renderer::render(const Scene& scene) {
+RenderResult Renderer::render(const Scene& given) {
+    Scene made;
+    if (needs_lowering(given)) made = lowered(given);
+    const Scene& scene = needs_lowering(given) ? made : given;
     impl_->check_thread();
     impl_->context.make_current();
     try {

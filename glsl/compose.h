@@ -12,6 +12,7 @@ const int kComposeImageBinding = 0;  // rgba8 (display) or rgba32f (linear)
 const int kComposeRadianceUnit = 6;  // mean radiance, one texel a pixel
 const int kComposeDistanceUnit = 4;
 const int kComposeMaterialUnit = 5;
+const int kComposeLightsUnit = 7;    // what point, spot and directional lights add, or one texel without them
 
 const int kTonemapNone = 0;
 const int kTonemapReinhard = 1;
@@ -31,10 +32,8 @@ struct ComposeParams {
     float radiance_scale; // what the radiance texture must be multiplied with
     float white;         // Reinhard extended: the radiance that becomes 1
     int has_shapes;
-    int first_row;       // of the canvas in the image: tall pictures are composed in bands
-    int pad0;
-    int pad1;
-    int pad2;
+    ivec2 first_pixel;   // of the canvas in the image: parts of it, and bands of tall pictures
+    ivec2 first_lit;     // the pixel of the radiance's first texel
 };
 
 #ifdef __cplusplus

@@ -34,10 +34,15 @@ void main() {
     if (cell.x >= params.extent.x || cell.y >= params.extent.y) return;
     int h = params.cell;
     ivec2 corner = cell * h;  // first pixel, of the band
+    ivec4 window = params.window * (kExactTile / h);
     if (params.ask_first != 0) {
-        ask(corner);
+        // Elsewhere the tiles' corners only, for the mean of the light.
+        bool inside = all(greaterThanEqual(cell, window.xy)) && all(lessThanEqual(cell, window.zw));
+        bool of_tile = corner % kExactTile == ivec2(0) && all(lessThan(corner, params.tiles * kExactTile));
+        if (inside || of_tile) ask(corner);
         return;
     }
+    if (any(lessThan(cell, window.xy)) || any(greaterThanEqual(cell, window.zw))) return;
     if (h < kExactCell) {
         // Only where the larger cell was split.
         ivec2 larger = corner / (2 * h) * (2 * h);

@@ -29,6 +29,7 @@ struct Limits {
     double max_radiance = 1e9;     // linear; products of three stay finite in single precision
     double max_exposure_ev = 64;   // absolute
     int max_bounces = 64;          // the format's own bound
+    int max_converging_bounces = 256;  // of bounces: "converged"
 };
 
 }  // namespace penumbra

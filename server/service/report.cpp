@@ -139,7 +139,8 @@ std::string stats_json(const RenderResponse& response) {
                                   {"height", pass.height},
                                   {"dispatches", pass.dispatches},
                                   {"rays", pass.rays},
-                                  {"bytes", pass.bytes}});
+                                  {"bytes", pass.bytes},
+                                  {"points", pass.points}});
     }
     for (const SkippedWork& work : stats.skipped) {
         json["skipped"].push_back({{"what", work.what}, {"why", work.why}, {"saved", work.saved}});

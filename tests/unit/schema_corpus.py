@@ -22,6 +22,8 @@ BEYOND_BY_NAME = {
     "rect_corner_too_large": "half the shorter side",
     "spot_inner_over_outer": "one angle against the other",
     "emission_too_bright": "a colour times a factor",
+    "region_outside": "a pixel against the canvas",
+    "region_too_wide": "a part against the canvas",
 }
 
 
