@@ -121,8 +121,10 @@ BufferTexture::BufferTexture(GLenum internal_format, const void* data, std::size
     static constexpr unsigned char kNothing[16] = {};
     glGenBuffers(1, &buffer_);
     glBindBuffer(GL_TEXTURE_BUFFER, buffer_);
-    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max<std::size_t>(bytes, 16)),
-                 bytes == 0 ? kNothing : data, GL_STATIC_DRAW);
+    // What is shorter than a texel is filled up: the driver would read on behind it.
+    const bool is_short = bytes < sizeof(kNothing);
+    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(is_short ? sizeof(kNothing) : bytes), is_short ? kNothing : data, GL_STATIC_DRAW);
+    if (is_short && bytes > 0) glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
     glGenTextures(1, &id_);
     // Not on a unit whose buffer texture a pass is about to read.
     glActiveTexture(GL_TEXTURE0 + kScratchUnit);
