@@ -127,6 +127,9 @@ BufferTexture::BufferTexture(GLenum internal_format, const void* data, std::size
     glGenBuffers(1, &buffer_);
     glBindBuffer(GL_TEXTURE_BUFFER, buffer_);
     glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(buffer_texture_bytes(bytes)), nullptr, GL_STATIC_DRAW);
+    // What is shorter than a texel is filled up: the driver would read on behind it.
+    static constexpr unsigned char kNothing[16] = {};
+    if (bytes < sizeof(kNothing)) glBufferSubData(GL_TEXTURE_BUFFER, 0, sizeof(kNothing), kNothing);
     if (bytes > 0) glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
     glGenTextures(1, &id_);
     // Not on a unit whose buffer texture a pass is about to read.
