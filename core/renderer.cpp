@@ -10,6 +10,7 @@
 #include <thread>
 #include <type_traits>
 
+#include "core/film/exposure.h"
 #include "core/gl/context.h"
 #include "core/gl/loop_limit.h"
 #include "core/gl/timer.h"
@@ -25,6 +26,7 @@
 #include "core/passes/scene_buffers.h"
 #include "core/plan/plan.h"
 #include "core/plan/shape_lists.h"
+#include "core/scene/words.h"
 
 namespace penumbra {
 namespace {
@@ -102,9 +104,11 @@ private:
 // Collects the bands of the picture, without their alpha.
 class Reader {
 public:
-    Reader(glm::ivec2 canvas, bool linear) {
-        if (linear)
+    Reader(glm::ivec2 canvas, GLenum format) {
+        if (format == GL_RGBA32F)
             picture_ = ImageF(canvas.x, canvas.y, 3);
+        else if (format == GL_RGBA16)
+            picture_ = Image16(canvas.x, canvas.y, 3);
         else
             picture_ = Image8(canvas.x, canvas.y, 3);
     }
@@ -113,14 +117,14 @@ public:
         std::visit([&](auto& picture) { read_into(picture, band, first_row); }, picture_);
     }
 
-    std::variant<Image8, ImageF> take() { return std::move(picture_); }
+    std::variant<Image8, Image16, ImageF> take() { return std::move(picture_); }
 
 private:
     template <class T>
     static void read_into(BasicImage<T>& picture, const gl::Texture2D& band, int first_row) {
         const glm::ivec2 size = band.size();
         BasicImage<T> rgba(size.x, size.y, 4);
-        band.read(GL_RGBA, std::is_same_v<T, float> ? GL_FLOAT : GL_UNSIGNED_BYTE, rgba.data.data());
+        band.read(GL_RGBA, kType<T>, rgba.data.data());
         const std::size_t count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
         const T* from = rgba.data.data();
         T* to = picture.at(0, first_row);
@@ -131,7 +135,10 @@ private:
         }
     }
 
-    std::variant<Image8, ImageF> picture_;
+    template <class T>
+    static constexpr GLenum kType = std::is_same_v<T, float> ? GL_FLOAT : sizeof(T) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE;
+
+    std::variant<Image8, Image16, ImageF> picture_;
 };
 
 }  // namespace
@@ -148,6 +155,7 @@ struct Renderer::Impl {
           reference(options.shader_dir),
           exact(options.shader_dir),
           compose(options.shader_dir) {
+        if (options.tone_lut) compose.set_tone_lut(*options.tone_lut);
         const gl::ContextInfo& gl_info = context.info();
         info.kind = gl_info.software ? "cpu" : "gpu";
         info.platform = gl_info.platform;
@@ -170,6 +178,7 @@ struct Renderer::Impl {
     }
 
     RenderResult render(const Scene& scene, const std::string& not_exact = {});
+    double exposure_of(const Plan& plan, const Scene& scene, const gl::Texture2D& radiance, const DistanceField& field, Recorder& record);
     gl::Texture2D render_hrc(const Plan& plan, const DistanceField& field, Recorder& record);
     void check_thread() const {
         if (std::this_thread::get_id() != thread)
@@ -230,10 +239,38 @@ gl::Texture2D Renderer::Impl::render_hrc(const Plan& plan, const DistanceField& 
 }
 // ---- end of hrc
 
+// The factor before the tone curve. Automatic exposure looks at every free pixel, row by row: the same picture gives the same factor
+// whatever the bands.
+double Renderer::Impl::exposure_of(const Plan& plan, const Scene& scene, const gl::Texture2D& radiance, const DistanceField& field,
+                                   Recorder& record) {
+    if (!scene.output.auto_key) return exposure_factor(scene.output);
+    std::vector<float> luminances;  // of free pixels
+    for (int row = 0; row < plan.canvas.y; row += plan.band_rows) {
+        const int rows = std::min(plan.band_rows, plan.canvas.y - row);
+        gl::Texture2D band = settings.take(GL_RGBA32F, {plan.canvas.x, rows});
+        record.pass("exposure", {plan.canvas.x, rows},
+                    [&] { return compose.linear(plan, scene, radiance, field, settings, row, band); });
+        record.host("exposure read", {plan.canvas.x, rows}, [&] {
+            ImageF rgba(plan.canvas.x, rows, 4);
+            band.read(GL_RGBA, GL_FLOAT, rgba.data.data());
+            for (std::size_t i = 0; i < rgba.data.size(); i += 4) {
+                const float* pixel = &rgba.data[i];
+                if (pixel[3] > 0) luminances.push_back(static_cast<float>(luminance({pixel[0], pixel[1], pixel[2]})));
+            }
+        });
+        settings.give(std::move(band));
+    }
+    LogAverage average;
+    for (const float y : luminances) average.add_to_mean(double(y));
+    for (const float y : luminances) average.add(double(y));
+    return exposure_factor(scene.output, average.value());
+}
+
 // The frame, in the order in which it happens.
 RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_exact) {
     const Clock::time_point start = Clock::now();
     const bool linear = scene.output.format != "png";
+    const GLenum format = linear ? GL_RGBA32F : bit_depth_of("png", scene.output.bit_depth) == 16 ? GL_RGBA16 : GL_RGBA8;
     const Plan plan = make_plan(scene, limits, not_exact);
     const PackedScene packed = pack_scene(scene, plan.radiance_scale);
     const SceneBuffers buffers(packed, scene.sky, plan);
@@ -285,12 +322,15 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
     }
 
     RenderResult result;
-    Reader reader(plan.canvas, linear);
+    const double exposure = linear ? 1.0 : exposure_of(plan, scene, radiance, field, record);
+    Reader reader(plan.canvas, format);
     for (int row = 0; row < plan.canvas.y; row += plan.band_rows) {
         const int rows = std::min(plan.band_rows, plan.canvas.y - row);
-        gl::Texture2D band = settings.take(linear ? GL_RGBA32F : GL_RGBA8, {plan.canvas.x, rows});
-        record.pass("compose", {plan.canvas.x, rows},
-                    [&] { return compose.run(plan, scene, linear, radiance, field, settings, row, band); });
+        gl::Texture2D band = settings.take(format, {plan.canvas.x, rows});
+        record.pass("compose", {plan.canvas.x, rows}, [&] {
+            return linear ? compose.linear(plan, scene, radiance, field, settings, row, band)
+                          : compose.display(plan, scene, exposure, radiance, field, settings, row, band);
+        });
         record.host("read", {plan.canvas.x, rows}, [&] { reader.read(band, row); });
         settings.give(std::move(band));
     }

@@ -1,5 +1,5 @@
 // Reads mean radiance, distance and material; writes the linear picture at pixel centres, never
-// antialiased. One thread is one pixel.
+// antialiased; alpha is 1 in free pixels and 0 in solid ones. One thread is one pixel.
 #version 430 core
 #include "compose.h"
 layout(std140, binding = kComposeParamsBinding) uniform Params { ComposeParams params; };
@@ -13,5 +13,5 @@ void main() {
     ivec2 pixel = texel + ivec2(0, params.first_row);
     if (pixel.x >= params.extent.x || pixel.y >= params.extent.y) return;
     bool solid = params.has_shapes != 0 && pixel_distance(pixel) <= 0.0;
-    imageStore(linear_image, texel, vec4(solid ? solid_radiance(pixel) : floor_radiance(pixel), 1.0));
+    imageStore(linear_image, texel, vec4(solid ? solid_radiance(pixel) : floor_radiance(pixel), solid ? 0.0 : 1.0));
 }

@@ -49,12 +49,28 @@ void finish_chunk(Bytes& file, std::size_t start) {
     put_u32(file.data() + file.size() - 4, crc);
 }
 
-Bytes filter_rows(const Image8& image) {
-    const std::size_t pixel = std::size_t(image.channels);
+// The bytes of one row as the file has them: the high byte first.
+void row_bytes(const Image8& image, int y, std::uint8_t* to) {
+    std::memcpy(to, image.at(0, y), std::size_t(image.width) * std::size_t(image.channels));
+}
+void row_bytes(const Image16& image, int y, std::uint8_t* to) {
+    const std::uint16_t* from = image.at(0, y);
+    const std::size_t count = std::size_t(image.width) * std::size_t(image.channels);
+    for (std::size_t i = 0; i < count; ++i) {
+        to[2 * i] = std::uint8_t(from[i] >> 8);
+        to[2 * i + 1] = std::uint8_t(from[i]);
+    }
+}
+
+template <class T>
+Bytes filter_rows(const BasicImage<T>& image) {
+    const std::size_t pixel = std::size_t(image.channels) * sizeof(T);
     const std::size_t row = std::size_t(image.width) * pixel;
     Bytes filtered((row + 1) * std::size_t(image.height));
+    Bytes bytes(row);
     for (int y = 0; y < image.height; ++y) {
-        const std::uint8_t* from = image.at(0, y);
+        row_bytes(image, y, bytes.data());
+        const std::uint8_t* from = bytes.data();
         std::uint8_t* to = filtered.data() + std::size_t(y) * (row + 1);
         *to++ = kFilterSub;
         std::memcpy(to, from, pixel);
@@ -76,9 +92,8 @@ std::uint8_t colour_type(int channels) {
     }
 }
 
-}  // namespace
-
-Bytes encode_png(const Image8& image) {
+template <class T>
+Bytes encode(const BasicImage<T>& image) {
     assert(image.width > 0 && image.height > 0);
     assert(image.channels == 1 || image.channels == 3 || image.channels == 4);
     assert(image.data.size() ==
@@ -94,7 +109,7 @@ Bytes encode_png(const Image8& image) {
     std::uint8_t* const ihdr = file.data() + file.size() - 13;
     put_u32(ihdr, std::uint32_t(image.width));
     put_u32(ihdr + 4, std::uint32_t(image.height));
-    ihdr[8] = 8;
+    ihdr[8] = 8 * sizeof(T);
     ihdr[9] = colour_type(image.channels);
     finish_chunk(file, header);
 
@@ -120,5 +135,10 @@ Bytes encode_png(const Image8& image) {
     finish_chunk(file, begin_chunk(file, "IEND"));
     return file;
 }
+
+}  // namespace
+
+Bytes encode_png(const Image8& image) { return encode(image); }
+Bytes encode_png(const Image16& image) { return encode(image); }
 
 }  // namespace penumbra

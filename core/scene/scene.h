@@ -134,6 +134,14 @@ struct Canvas {
 enum class Quality { draft, standard, high };
 enum class Skip { all, none };
 enum class Solids { emission, lit };
+enum class Dither { none, triangular };
+
+// A camera's settings, for an exposure (core/film/exposure.h).
+struct Camera {
+    double aperture = 1;  // f-number
+    double shutter_s = 1;
+    double iso = 100;
+};
 
 struct RenderSettings {
     std::string method = "auto";
@@ -143,13 +151,23 @@ struct RenderSettings {
     std::string view = "final";
 };
 
+// The radiance that Reinhard's extended curve maps to 1, unless the scene says another.
+constexpr double kDefaultWhite = 4;
+// What automatic exposure makes of the log-average: the reflectance of a photographer's grey card.
+constexpr double kDefaultKey = 0.18;
+
 struct OutputSettings {
     std::string format = "png";
-    int bit_depth = 8;
+    std::optional<int> bit_depth;  // else the format's own (core/scene/words.h)
     bool antialias = true;
     Solids solids = Solids::emission;
-    double exposure_ev = 0;
+    double exposure_ev = 0;           // with a camera, its compensation
+    std::optional<Camera> camera;
+    std::optional<double> auto_key;   // automatic exposure: what the log-average of the free pixels becomes
     std::string tonemap = "none";
+    std::optional<std::string> look;  // of "agx", else "none"
+    std::optional<double> white;      // of "reinhard_extended", else kDefaultWhite
+    Dither dither = Dither::none;
 };
 
 struct Scene {

@@ -17,7 +17,7 @@ namespace penumbra {
 namespace {
 
 struct RenderOptions {
-    std::string scene, output, stats, format, device = "auto";
+    std::string scene, output, stats, format, device = "auto", tone_lut;
     std::vector<std::string> sets;
 };
 
@@ -50,15 +50,16 @@ int render_file(const RenderOptions& options, const Engine& engine) {
     if (options.output == "-" && stdout_is_terminal()) {
         throw InputError("a picture does not go to a terminal; use -o FILE or a pipe");
     }
+    const std::shared_ptr<const ToneLut> tone_lut = read_tone_lut(options.tone_lut);
     const std::string text = read_text(options.scene, limits.text.max_bytes);
     request.text = text;
 
     // The device is asked for after the scene is known to be right: mistakes cost no start-up.
     const RenderResponse response =
-        render_to_bytes(request, limits, engine.unsupported, [&](const Scene& scene) {
+        render_to_bytes(request, limits, engine.unsupported_with({.tone_lut = tone_lut != nullptr}), [&](const Scene& scene) {
             RenderedScene rendered;
             rendered.outcome.result =
-                engine.make_backend({.device = options.device, .shader_dir = {}})->render(scene);
+                engine.make_backend({.device = options.device, .shader_dir = {}, .tone_lut = tone_lut})->render(scene);
             return rendered;
         });
     if (response.failure != RenderFailure::none) {
@@ -84,6 +85,7 @@ void add_render_command(CLI::App& app, CommandContext& context) {
         ->take_all();
     command->add_option("--stats", options->stats, "Write what ran and how long as JSON, - for the standard output");
     add_device_option(*command, options->device);
+    add_tone_lut_option(*command, options->tone_lut);
     command->callback([&context, options] {
         context.run = [&context, options]() -> int {
             try {

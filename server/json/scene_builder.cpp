@@ -324,13 +324,59 @@ private:
         }
         const Members members(reader_, where, id, kOutputKeys, "the output settings");
         members.string("format", output.format);
-        members.integer("bit_depth", output.bit_depth, "8 or 16");
+        if (const NodeId depth = members.find("bit_depth"); depth != kNoNode) {
+            output.bit_depth = reader_.integer(where.key("bit_depth"), depth, "8, 16 or 32");
+        }
         members.boolean("antialias", output.antialias);
         if (const auto solids = read_choice(members, where, "solids", kSolids)) {
             output.solids = *solids == 0 ? Solids::emission : Solids::lit;
         }
-        members.number("exposure", output.exposure_ev);
+        if (const NodeId exposure = members.find("exposure"); exposure != kNoNode) {
+            read_exposure(where.key("exposure"), exposure, output);
+        }
         members.string("tonemap", output.tonemap);
+        if (const NodeId look = members.find("look"); look != kNoNode) {
+            if (const auto word = reader_.string(where.key("look"), look)) {
+                output.look = std::string(*word);
+            }
+        }
+        if (const NodeId white = members.find("white"); white != kNoNode) {
+            output.white = reader_.number(where.key("white"), white);
+        }
+        if (const auto dither = read_choice(members, where, "dither", kDithers)) {
+            output.dither = *dither == 0 ? Dither::none : Dither::triangular;
+        }
+    }
+
+    // A number of stops, "auto", a camera's settings, or automatic with its key.
+    void read_exposure(const Path& where, NodeId id, OutputSettings& output) {
+        const NodeKind kind = reader_.node(id).kind;
+        if (kind == NodeKind::string) {
+            if (reader_.node(id).string == "auto") {
+                output.auto_key = kDefaultKey;
+            } else {
+                reader_.report(where, id, "unknown_value", [&] {
+                    return "must be a number of stops or \"auto\", is " + in_quotes(reader_.node(id).string);
+                });
+            }
+        } else if (kind == NodeKind::object && reader_.tree().child(id, "key") != kNoNode) {
+            const Members members(reader_, where, id, kAutoExposureKeys, "an automatic exposure");
+            double key = kUnread;
+            members.number("key", key);
+            output.auto_key = key;
+        } else if (kind == NodeKind::object) {
+            const Members members(reader_, where, id, kCameraKeys, "a camera's exposure");
+            Camera camera;
+            members.need_number("aperture", camera.aperture);
+            members.need_number("shutter", camera.shutter_s);
+            members.number("iso", camera.iso);
+            members.number("compensation", output.exposure_ev);
+            output.camera = camera;
+        } else if (reader_.expect(where, id, NodeKind::number,
+                                  "a number of stops, \"auto\", a camera's {\"aperture\", \"shutter\", \"iso\"} or "
+                                  "{\"key\"}")) {
+            output.exposure_ev = reader_.number(where, id);
+        }
     }
 
     ValueReader reader_;

@@ -38,6 +38,9 @@ std::span<const std::string_view> words_at(std::string_view pointer) {
     if (pointer == "/output/format") {
         return known_formats();
     }
+    if (pointer == "/output/look") {
+        return known_looks();
+    }
     return pointer == "/output/tonemap" ? known_tonemaps() : std::span<const std::string_view>();
 }
 

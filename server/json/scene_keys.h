@@ -15,7 +15,11 @@ inline constexpr std::string_view kSkyKeys[] = {"radiance", "gradient"};
 inline constexpr std::string_view kStopKeys[] = {"angle", "radiance"};
 inline constexpr std::string_view kRenderKeys[] = {"method", "quality", "bounces", "skip", "view"};
 inline constexpr std::string_view kOutputKeys[] = {"format", "bit_depth", "antialias",
-                                                   "solids", "exposure",  "tonemap"};
+                                                   "solids", "exposure",  "tonemap",
+                                                   "look",   "white",     "dither"};
+// An exposure that is an object: a camera's, or the automatic one's.
+inline constexpr std::string_view kCameraKeys[] = {"aperture", "shutter", "iso", "compensation"};
+inline constexpr std::string_view kAutoExposureKeys[] = {"key"};
 inline constexpr std::string_view kColourKeys[] = {"color", "intensity"};
 
 inline constexpr std::string_view kShapeTypes[] = {"circle",   "ellipse", "rect",  "line",
@@ -43,6 +47,7 @@ inline constexpr std::string_view kDirectionalKeys[] = {"type", "direction", "ir
 inline constexpr std::string_view kQualities[] = {"draft", "standard", "high"};
 inline constexpr std::string_view kSkips[] = {"all", "none"};
 inline constexpr std::string_view kSolids[] = {"emission", "lit"};
+inline constexpr std::string_view kDithers[] = {"none", "triangular"};
 inline constexpr std::string_view kUses[] = {"emission", "albedo"};
 
 }  // namespace penumbra

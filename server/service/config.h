@@ -17,6 +17,7 @@ struct Config {
     std::string port_file;
 
     std::string device = "auto";
+    std::string tone_lut;  // file; empty: scenes with the tone map "tony" are refused
 
     // Renders waiting behind the one that runs. Each waiting one holds a parsed scene (a few MB) and a
     // client; 16 standard renders of 512 x 512 are some seconds on two cores, which clients sit out.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/scene/words.h"
+
 namespace penumbra {
 namespace {
 
@@ -40,6 +42,7 @@ RenderResponse render_checked(CheckedScene&& checked, double parse_ms, const Sce
         return response;
     }
     response.format = checked.scene->output.format;
+    const int bit_depth = bit_depth_of(response.format, checked.scene->output.bit_depth);
     RenderedScene rendered = render(std::move(*checked.scene));
     response.failure = rendered.failure;
     response.error = std::move(rendered.outcome.error);
@@ -51,7 +54,7 @@ RenderResponse render_checked(CheckedScene&& checked, double parse_ms, const Sce
         return response;
     }
     const Clock::time_point start = Clock::now();
-    response.picture = encode_picture(*rendered.outcome.result);
+    response.picture = encode_picture(*rendered.outcome.result, response.format, bit_depth);
     response.encode_ms = ms_since(start);
     response.stats = std::move(rendered.outcome.result->stats);
     return response;

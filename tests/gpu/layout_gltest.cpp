@@ -78,7 +78,7 @@ Offsets exact_fields() {
 Offsets compose_fields() {
     return {FIELD(ComposeParams, origin),       FIELD(ComposeParams, extent),
             FIELD(ComposeParams, border),       FIELD(ComposeParams, antialias),
-            FIELD(ComposeParams, tonemap),      FIELD(ComposeParams, floor_albedo),
+            FIELD(ComposeParams, levels),      FIELD(ComposeParams, floor_albedo),
             FIELD(ComposeParams, exposure),     FIELD(ComposeParams, radiance_scale),
             FIELD(ComposeParams, white),        FIELD(ComposeParams, has_shapes),
             FIELD(ComposeParams, first_row),    FIELD(ComposeParams, pad0),

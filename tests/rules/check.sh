@@ -66,7 +66,7 @@ search_include() { grep -E "^[^:]*:[0-9]+:($1)" || true; }
 # ---- rules: each prints its breaches -------------------------------------------------------------
 
 readonly gl_headers='glad/|EGL/|GL/|GLES[0-9]*/|KHR/|GL/osmesa'
-readonly gl_free=(core/scene core/plan core/image core/reference core/compare)
+readonly gl_free=(core/scene core/plan core/image core/film core/reference core/compare)
 
 # core knows no server, JSON, HTTP, log or command line, and reads no environment.
 rule_core_knows_no_server() {

@@ -22,6 +22,10 @@ BEYOND_BY_NAME = {
     "rect_corner_too_large": "half the shorter side",
     "spot_inner_over_outer": "one angle against the other",
     "emission_too_bright": "a colour times a factor",
+    "bit_depth_of_pfm": "one key against another",
+    "bit_depth_32_of_png": "one key against another",
+    "look_without_agx": "one key against another",
+    "white_without_its_curve": "one key against another",
 }
 
 
