@@ -20,6 +20,7 @@
 #include "core/passes/exact_pass.h"
 #include "core/passes/hrc_pass.h"
 #include "core/passes/jump_flood_pass.h"
+#include "core/passes/lit_solids.h"
 #include "core/passes/rc_fix_pass.h"
 #include "core/passes/reference_pass.h"
 #include "core/passes/resolve_pass.h"
@@ -27,6 +28,8 @@
 #include "core/plan/plan.h"
 #include "core/plan/shape_lists.h"
 #include "core/scene/words.h"
+#include "core/views/views.h"
+#include "glsl/distance.h"
 
 namespace penumbra {
 namespace {
@@ -178,6 +181,19 @@ struct Renderer::Impl {
     }
 
     RenderResult render(const Scene& scene, const std::string& not_exact = {});
+    RenderStats stats_of(const Plan& plan, const SceneBuffers& buffers, std::vector<PassStats> passes) const {
+        RenderStats stats;
+        stats.passes = std::move(passes);
+        stats.device = info.renderer;
+        stats.method = plan.method;
+        stats.method_reason = plan.method_reason;
+        stats.width = plan.canvas.x;
+        stats.height = plan.canvas.y;
+        stats.gpu_bytes = plan.gpu_bytes + buffers.bytes();
+        stats.skipped = plan.skipped;
+        return stats;
+    }
+    Image8 draw_view(const Plan& plan, const Scene& scene, const DistanceField& field, const ShapeLists& lists);
     double exposure_of(const Plan& plan, const Scene& scene, const gl::Texture2D& radiance, const DistanceField& field, Recorder& record);
     gl::Texture2D render_hrc(const Plan& plan, const DistanceField& field, Recorder& record);
     void check_thread() const {
@@ -266,6 +282,35 @@ double Renderer::Impl::exposure_of(const Plan& plan, const Scene& scene, const g
     return exposure_factor(scene.output, average.value());
 }
 
+// A look into the frame instead of its light: drawn on the host.
+Image8 Renderer::Impl::draw_view(const Plan& plan, const Scene& scene, const DistanceField& field, const ShapeLists& lists) {
+    ViewField seen{plan.canvas, {}};
+    const bool empty = plan.shape_slices.empty();
+    std::vector<float> grid;
+    if (!empty) {
+        grid.resize(static_cast<std::size_t>(plan.grid.size.x) * static_cast<std::size_t>(plan.grid.size.y));
+        field.distance.read(GL_RED, GL_FLOAT, grid.data());
+    }
+    for (int y = 0; y < plan.canvas.y; ++y)
+        for (int x = 0; x < plan.canvas.x; ++x) {
+            const glm::ivec2 at = glm::ivec2(x, y) + plan.grid.border;
+            const auto i = static_cast<std::size_t>(at.y) * static_cast<std::size_t>(plan.grid.size.x) + static_cast<std::size_t>(at.x);
+            seen.distance.push_back(empty ? static_cast<float>(plan.grid.diagonal_px) : grid[i]);
+        }
+    if (scene.render.view == "distance") return draw_distance(seen);
+    if (scene.render.view == "normals") return draw_normals(seen);
+    // Without lists every tile asks every shape.
+    const int side = glsl::kDistanceTile;
+    glm::ivec2 tiles = lists.tiles;
+    std::vector<int> counts(lists.tile_count(), 0);
+    for (std::size_t i = 0; i < lists.ranges.size(); ++i) counts[i % counts.size()] += lists.ranges[i].y - lists.ranges[i].x;
+    if (tiles.x == 0) {
+        tiles = (plan.grid.size + side - 1) / side;
+        counts.assign(static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y), static_cast<int>(scene.shapes.size()));
+    }
+    return draw_tiles(seen, counts, tiles, plan.grid.border, side);
+}
+
 // The frame, in the order in which it happens.
 RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_exact) {
     const Clock::time_point start = Clock::now();
@@ -287,6 +332,17 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
         record.pass("distance", plan.grid.size, [&] { return distance.run(plan, lists, settings, field); });
     if (!plan.jump_steps.empty())
         record.pass("jump flood", plan.grid.size, [&] { return jump_flood.run(plan, settings, field); });
+
+    if (scene.render.view != "final") {
+        RenderResult result;
+        record.host("view", plan.canvas, [&] { result.picture = draw_view(plan, scene, field, lists); });
+        context.check_reset();
+        settings.give(std::move(field.distance));
+        settings.give(std::move(field.material));
+        result.stats = stats_of(plan, buffers, record.finish());
+        result.stats.total_ms = ms_since(start);
+        return result;
+    }
 
     gl::Texture2D radiance;
     for (std::size_t level = plan.cascades.size(); level-- > 0;) {
@@ -316,12 +372,15 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
         });
     if (!radiance) {
         // No light at all: one black texel stands for every pixel.
-        const float black[4] = {};
-        radiance = gl::Texture2D(GL_RGBA32F, {1, 1});
-        radiance.fill(GL_RGBA, GL_FLOAT, black);
+        radiance = black_texel();
     }
 
     RenderResult result;
+    const bool lit = scene.output.solids == Solids::lit && !scene.shapes.empty();
+    if (lit)
+        record.host("lit solids", plan.canvas, [&] { compose.set_lit(lit_solids(plan, scene, field, radiance)); });
+    else
+        compose.set_lit(black_texel());
     const double exposure = linear ? 1.0 : exposure_of(plan, scene, radiance, field, record);
     Reader reader(plan.canvas, format);
     for (int row = 0; row < plan.canvas.y; row += plan.band_rows) {
@@ -341,14 +400,7 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
     settings.give(std::move(radiance));
 
     RenderStats& stats = result.stats;
-    stats.passes = record.finish();
-    stats.device = info.renderer;
-    stats.method = plan.method;
-    stats.method_reason = plan.method_reason;
-    stats.width = plan.canvas.x;
-    stats.height = plan.canvas.y;
-    stats.gpu_bytes = plan.gpu_bytes + buffers.bytes();
-    stats.skipped = plan.skipped;
+    stats = stats_of(plan, buffers, record.finish());
     if (lists.tiles.x > 0) stats.skipped.push_back(saved_by_lists(lists, packed, plan.grid));
     stats.total_ms = ms_since(start);
     return result;

@@ -14,6 +14,8 @@ const int kComposeDistanceUnit = 4;
 const int kComposeMaterialUnit = 5;
 const int kComposeLutUnit = 7;       // a tone curve of kTonemapTony: its slices, one below the other
 
+const int kComposeLitUnit = 8;       // what solid pixels reflect, one texel a pixel; one black texel: nothing
+
 const int kTonemapNone = 0;
 const int kTonemapReinhard = 1;
 const int kTonemapReinhardExtended = 2;

@@ -78,6 +78,7 @@ PassWork ComposePass::display(const Plan& plan, const Scene& scene, double expos
     params.levels = out.format() == GL_RGBA16 ? 65535 : 255;
     params.exposure = static_cast<float>(exposure);
     params.white = static_cast<float>(scene.output.white.value_or(kDefaultWhite));
+    lit_.bind_texture(glsl::kComposeLitUnit);
     if (tone_lut_) tone_lut_.bind_texture(glsl::kComposeLutUnit);
     return work_of(program.dispatch(params, out.size(), settings.pixels), out);
 }
@@ -85,6 +86,7 @@ PassWork ComposePass::display(const Plan& plan, const Scene& scene, double expos
 PassWork ComposePass::linear(const Plan& plan, const Scene& scene, const gl::Texture2D& radiance, const DistanceField& field,
                              const PassSettings& settings, int first_row, gl::Texture2D& out) {
     const glsl::ComposeParams params = params_of(plan, scene, radiance, field, first_row, out);
+    lit_.bind_texture(glsl::kComposeLitUnit);
     return work_of(linear_.dispatch(params, out.size(), settings.pixels), out);
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/film/tone_lut.h"
@@ -22,6 +23,9 @@ public:
     // What the tone map "tony" looks up.
     void set_tone_lut(const ToneLut& lut);
 
+    // What solid pixels show beside their emission, until it is set again: see lit_solids().
+    void set_lit(gl::Texture2D lit) { lit_ = std::move(lit); }
+
     // Rows `first_row` and on, as many as `out` has, for display: the format of `out` says how many codes there are.
     PassWork display(const Plan& plan, const Scene& scene, double exposure, const gl::Texture2D& radiance, const DistanceField& field,
                      const PassSettings& settings, int first_row, gl::Texture2D& out);
@@ -37,6 +41,7 @@ private:
     std::map<Curve, gl::ComputeProgram> display_;
     gl::ComputeProgram linear_;
     gl::Texture2D tone_lut_;
+    gl::Texture2D lit_;
 };
 
 }  // namespace penumbra

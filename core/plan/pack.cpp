@@ -76,15 +76,16 @@ private:
     }
 
     void add(const Shape& shape, const Polyline& g) {
-        const vec4 box = add_edges(g.points, g.closed);
+        const vec4 box = add_stroke(g.points, g.closed);
         const double half = 0.5 * frame_.length(g.width);
         record(shape, glsl::kShapePolyline, half, box, {0, 0, float(half), 0});
     }
 
     void add(const Shape& shape, const Polygon& g) {
-        const vec4 box = add_edges(g.points, true);
+        Box box;
+        for_each_edge(g, [&](Point a, Point b) { add_edge(a, b, box); });
         // How thick a polygon is where it is thinnest is not known: it is marched as it is.
-        record(shape, glsl::kShapePolygon, kSolidHalfThickness, box, vec4(0));
+        record(shape, glsl::kShapePolygon, kSolidHalfThickness, join(box.lo, box.hi), vec4(0));
     }
 
     void add(const Shape& shape, const Bitmap& g) {
@@ -105,20 +106,25 @@ private:
         packed_.shapes[packed_.shapes.size() - 3].w = float(g.as_albedo ? 0.0 : g.emission_scale * scale_);
     }
 
-    vec4 add_edges(const std::vector<Point>& points, bool closed) {
-        dvec2 lo(1e300);
-        dvec2 hi(-1e300);
-        const auto edge = [&](Point from, Point to) {
-            const dvec2 a = frame_.point(from);
-            const dvec2 b = frame_.point(to);
-            packed_.edges.push_back(join(a, b));
-            lo = glm::min(lo, glm::min(a, b));
-            hi = glm::max(hi, glm::max(a, b));
-        };
-        if (points.size() == 1) edge(points[0], points[0]);
-        for (std::size_t i = 0; i + 1 < points.size(); ++i) edge(points[i], points[i + 1]);
-        if (closed && points.size() > 1) edge(points.back(), points.front());
-        return join(lo, hi);
+    struct Box {
+        dvec2 lo{1e300};
+        dvec2 hi{-1e300};
+    };
+
+    void add_edge(Point from, Point to, Box& box) {
+        const dvec2 a = frame_.point(from);
+        const dvec2 b = frame_.point(to);
+        packed_.edges.push_back(join(a, b));
+        box.lo = glm::min(box.lo, glm::min(a, b));
+        box.hi = glm::max(box.hi, glm::max(a, b));
+    }
+
+    vec4 add_stroke(const std::vector<Point>& points, bool closed) {
+        Box box;
+        if (points.size() == 1) add_edge(points[0], points[0], box);
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) add_edge(points[i], points[i + 1], box);
+        if (closed && points.size() > 1) add_edge(points.back(), points.front(), box);
+        return join(box.lo, box.hi);
     }
 
     PixelFrame frame_;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -53,10 +54,27 @@ struct Polyline {
     bool closed = false;
 };
 
-// Filled by the even-odd rule.
+// What an outline was written as; problems name its key.
+enum class OutlineKey { points, d, text };
+
+// Filled by the even-odd rule. Its rings stand one behind the other in `points`: holes, and pieces that lie apart. Each ring but
+// the first begins at one of `ring_starts`, which grow; each is closed.
 struct Polygon {
-    std::vector<Point> points;
+    std::vector<Point> points{};
+    std::vector<std::size_t> ring_starts{};
+    OutlineKey key = OutlineKey::points;
 };
+
+// Calls edge(from, to) for every edge of every ring, in order.
+template <class Edge>
+void for_each_edge(const Polygon& polygon, Edge edge) {
+    std::size_t first = 0;
+    for (std::size_t ring = 0; ring <= polygon.ring_starts.size(); ++ring) {
+        const std::size_t end = ring < polygon.ring_starts.size() ? polygon.ring_starts[ring] : polygon.points.size();
+        for (std::size_t i = first; i < end; ++i) edge(polygon.points[i], polygon.points[i + 1 < end ? i + 1 : first]);
+        first = end;
+    }
+}
 
 // Decoded picture: RGBA, 8 bits, straight alpha, colours sRGB encoded, rows top to bottom.
 struct Texels {

@@ -11,7 +11,8 @@ namespace {
 constexpr std::string_view kMethods[] = {"auto",  "rc",     "rc_fix",   "hrc",
                                          "exact", "hybrid", "reference"};
 constexpr std::string_view kViews[] = {"final",  "distance", "cascade0",
-                                       "probes", "steps",    "normals"};
+                                       "probes", "steps",    "normals",
+                                       "tiles"};
 constexpr std::string_view kFormats[] = {"png", "pfm", "exr", "hdr", "npy"};
 constexpr std::string_view kTonemaps[] = {
     "none", "reinhard", "reinhard_extended", "aces", "aces_narkowicz", "agx", "pbr_neutral", "tony"};

@@ -9,6 +9,10 @@
 
 namespace penumbra {
 
+void add_font_option(CLI::App& command, std::string& path) {
+    command.add_option("--font", path, "Font file for texts (TrueType, OpenType); else DejaVu Sans")->envname("PENUMBRA_FONT");
+}
+
 void add_tone_lut_option(CLI::App& command, std::string& path) {
     command.add_option("--tony-lut", path, "Table of the tone map tony: tony_mc_mapface.dds of its project")
         ->envname("PENUMBRA_TONY_LUT");
@@ -38,6 +42,7 @@ void add_config_options(CLI::App& command, Config& config) {
     option("--port", config.port, "PENUMBRA_PORT", "Port; 0 takes a free one")->check(whole_number(0, 65535));
     option("--port-file", config.port_file, "PENUMBRA_PORT_FILE", "Write the port here once it listens");
     add_device_option(command, config.device);
+    add_font_option(command, config.font);
     add_tone_lut_option(command, config.tone_lut);
     option("--queue", config.queue_capacity, "PENUMBRA_QUEUE", "Renders that may wait; more get 503")
         ->check(whole_number(1, 10000));

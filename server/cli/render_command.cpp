@@ -17,7 +17,7 @@ namespace penumbra {
 namespace {
 
 struct RenderOptions {
-    std::string scene, output, stats, format, device = "auto", tone_lut;
+    std::string scene, output, stats, format, device = "auto", tone_lut, font;
     std::vector<std::string> sets;
 };
 
@@ -39,7 +39,8 @@ FormatWishes wishes_of(const RenderOptions& options) {
 }
 
 int render_file(const RenderOptions& options, const Engine& engine) {
-    const Config config;
+    Config config;
+    config.font = options.font;
     const SceneLimits limits = limits_of(config);
     RenderRequest request;
     request.formats = wishes_of(options);
@@ -85,6 +86,7 @@ void add_render_command(CLI::App& app, CommandContext& context) {
         ->take_all();
     command->add_option("--stats", options->stats, "Write what ran and how long as JSON, - for the standard output");
     add_device_option(*command, options->device);
+    add_font_option(*command, options->font);
     add_tone_lut_option(*command, options->tone_lut);
     command->callback([&context, options] {
         context.run = [&context, options]() -> int {

@@ -2,11 +2,14 @@
 #include "server/json/scene_builder.h"
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 
 #include "core/scene/wording.h"
+#include "server/json/sky_picture.h"
 #include "server/json/bitmap_reader.h"
+#include "server/json/outline_reader.h"
 #include "server/json/scene_keys.h"
 #include "server/json/value_reader.h"
 
@@ -20,8 +23,8 @@ constexpr double kUnread = std::numeric_limits<double>::quiet_NaN();
 
 class SceneBuilder {
 public:
-    SceneBuilder(const JsonTree& tree, const Limits& limits, ProblemList& problems)
-        : reader_(tree, problems), limits_(limits), bitmaps_(reader_, limits) {}
+    SceneBuilder(const JsonTree& tree, const Limits& limits, const FontSource& fonts, ProblemList& problems)
+        : reader_(tree, problems), limits_(limits), bitmaps_(reader_, limits), outlines_(reader_, limits, fonts) {}
 
     Scene build() {
         Scene scene;
@@ -33,6 +36,7 @@ public:
         read_version(root.key("version"), members.require("version"));
         read_canvas(root.key("canvas"), members.require("canvas"), scene.canvas);
         read_sky(root.key("sky"), members.find("sky"), scene.sky);
+        outlines_.set_pixel_size(scene.canvas.width > 0 ? scene.canvas.pixel_size() : 1);
         read_shapes(root.key("shapes"), members.find("shapes"), scene.shapes);
         read_lights(root.key("lights"), members.find("lights"), scene.lights);
         read_render(root.key("render"), members.find("render"), scene.render);
@@ -85,6 +89,7 @@ private:
         const Members members(reader_, where, id, kSkyKeys, "a sky");
         members.colour("radiance", sky.radiance);
         const NodeId gradient = members.find("gradient");
+        read_sky_picture(where, members, sky);
         if (gradient == kNoNode) {
             return;
         }
@@ -104,6 +109,44 @@ private:
              stop = reader_.node(stop).next_sibling) {
             sky.gradient.push_back(read_stop(list.index(sky.gradient.size()), stop));
         }
+    }
+
+    // One row of a picture, as the gradient that it is.
+    void read_sky_picture(const Path& where, const Members& members, Sky& sky) {
+        const NodeId image = members.find("image");
+        for (const std::string_view key : {"row", "scale"}) {
+            if (const NodeId id = members.find(key); id != kNoNode && image == kNoNode) {
+                reader_.report(where.key(key), id, "conflict", [] { return "is for a sky with an \"image\" only"; });
+            }
+        }
+        if (image == kNoNode) {
+            return;
+        }
+        if (members.find("radiance") != kNoNode || members.find("gradient") != kNoNode) {
+            reader_.report(where.key("image"), image, "conflict",
+                           [] { return "must not stand together with \"radiance\" or \"gradient\": keep one"; });
+        }
+        const auto texels = bitmaps_.read(where.key("image"), image);
+        double scale = 1;
+        members.number("scale", scale);
+        if (scale < 0 || scale > limits_.max_radiance) {
+            reader_.report(where.key("scale"), members.find("scale"), "out_of_range", [&] {
+                return "must be from 0 to " + number_text(limits_.max_radiance) + ", is " + number_text(scale);
+            });
+            scale = kUnread;
+        }
+        int row = texels ? texels->height / 2 : 0;
+        const std::string rows = "from 0 to " + std::to_string(texels ? texels->height - 1 : 0);
+        members.integer("row", row, rows);
+        if (!texels || std::isnan(scale)) {
+            return;
+        }
+        if (row < 0 || row >= texels->height) {
+            reader_.report(where.key("row"), members.find("row"), "out_of_range",
+                           [&] { return "must be " + rows + ", is " + std::to_string(row); });
+            return;
+        }
+        sky.gradient = sky_of_row(*texels, row, scale, limits_.max_sky_stops);
     }
 
     SkyStop read_stop(const Path& where, NodeId id) {
@@ -171,8 +214,14 @@ private:
             case 5:
                 shape.geometry = read_polygon(where, id, shape);
                 break;
-            default:
+            case 6:
                 shape.geometry = read_bitmap(where, id);
+                break;
+            case 7:
+                shape.geometry = outlines_.path(where, id, shape);
+                break;
+            default:
+                shape.geometry = outlines_.text(where, id, shape);
                 break;
         }
         return shape;
@@ -382,12 +431,13 @@ private:
     ValueReader reader_;
     const Limits& limits_;
     BitmapReader bitmaps_;
+    OutlineReader outlines_;
 };
 
 }  // namespace
 
-Scene build_scene(const JsonTree& tree, const Limits& limits, ProblemList& problems) {
-    return SceneBuilder(tree, limits, problems).build();
+Scene build_scene(const JsonTree& tree, const Limits& limits, const FontSource& fonts, ProblemList& problems) {
+    return SceneBuilder(tree, limits, fonts, problems).build();
 }
 
 }  // namespace penumbra

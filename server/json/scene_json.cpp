@@ -86,7 +86,7 @@ ParsedScene no_json(std::string_view text, TextError error) {
 }  // namespace
 
 ParsedScene parse_scene(std::string_view text, const Limits& limits, const TextLimits& text_limits,
-                        const std::vector<Override>& overrides) {
+                        const std::vector<Override>& overrides, const FontSource& fonts) {
     JsonTree tree;
     ParsedText parsed = parse_text(text, text_limits, tree);
     if (parsed.error) {
@@ -95,7 +95,7 @@ ParsedScene parse_scene(std::string_view text, const Limits& limits, const TextL
     ProblemList problems(text_limits.max_problems);
     add_duplicates(tree, problems);
     apply_overrides(tree, overrides, text_limits, problems);
-    Scene scene = build_scene(tree, limits, problems);
+    Scene scene = build_scene(tree, limits, fonts, problems);
     if (!problems.full()) {
         add_validation(tree, validate(scene, limits), problems);
     }

@@ -11,7 +11,7 @@ inline constexpr std::string_view kSceneKeys[] = {"version", "canvas", "sky",   
                                                   "lights",  "render", "output"};
 inline constexpr std::string_view kCanvasKeys[] = {"width", "height", "view", "margin", "floor"};
 inline constexpr std::string_view kFloorKeys[] = {"albedo"};
-inline constexpr std::string_view kSkyKeys[] = {"radiance", "gradient"};
+inline constexpr std::string_view kSkyKeys[] = {"radiance", "gradient", "image", "row", "scale"};
 inline constexpr std::string_view kStopKeys[] = {"angle", "radiance"};
 inline constexpr std::string_view kRenderKeys[] = {"method", "quality", "bounces", "skip", "view"};
 inline constexpr std::string_view kOutputKeys[] = {"format", "bit_depth", "antialias",
@@ -23,7 +23,7 @@ inline constexpr std::string_view kAutoExposureKeys[] = {"key"};
 inline constexpr std::string_view kColourKeys[] = {"color", "intensity"};
 
 inline constexpr std::string_view kShapeTypes[] = {"circle",   "ellipse", "rect",  "line",
-                                                   "polyline", "polygon", "bitmap"};
+                                                   "polyline", "polygon", "bitmap", "path", "text"};
 inline constexpr std::string_view kCircleKeys[] = {"type", "emission", "albedo", "center",
                                                    "radius"};
 inline constexpr std::string_view kEllipseKeys[] = {"type",   "emission", "albedo",
@@ -38,6 +38,9 @@ inline constexpr std::string_view kPolygonKeys[] = {"type", "emission", "albedo"
 inline constexpr std::string_view kBitmapKeys[] = {
     "type", "image", "position", "size", "emission_scale", "solid_above", "as"};
 
+inline constexpr std::string_view kPathKeys[] = {"type", "emission", "albedo", "d", "fill_rule", "position", "scale"};
+inline constexpr std::string_view kTextKeys[] = {"type", "emission", "albedo", "text", "position", "size", "anchor"};
+
 inline constexpr std::string_view kLightTypes[] = {"point", "spot", "directional"};
 inline constexpr std::string_view kPointLightKeys[] = {"type", "position", "intensity"};
 inline constexpr std::string_view kSpotKeys[] = {"type",        "position",    "direction",
@@ -48,6 +51,8 @@ inline constexpr std::string_view kQualities[] = {"draft", "standard", "high"};
 inline constexpr std::string_view kSkips[] = {"all", "none"};
 inline constexpr std::string_view kSolids[] = {"emission", "lit"};
 inline constexpr std::string_view kDithers[] = {"none", "triangular"};
+inline constexpr std::string_view kFillRules[] = {"nonzero", "evenodd"};
+inline constexpr std::string_view kAnchors[] = {"start", "middle", "end"};
 inline constexpr std::string_view kUses[] = {"emission", "albedo"};
 
 }  // namespace penumbra

@@ -17,6 +17,7 @@ struct Config {
     std::string port_file;
 
     std::string device = "auto";
+    std::string font;      // file; empty: Debian's DejaVu Sans
     std::string tone_lut;  // file; empty: scenes with the tone map "tony" are refused
 
     // Renders waiting behind the one that runs. Each waiting one holds a parsed scene (a few MB) and a

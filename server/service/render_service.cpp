@@ -67,13 +67,14 @@ SceneLimits limits_of(const Config& config) {
     limits.scene.max_canvas_pixels = std::min(limits.scene.max_canvas_pixels, config.max_pixels);
     limits.text.max_bytes = config.max_body_bytes;
     limits.text.max_string_bytes = std::min(limits.text.max_string_bytes, config.max_body_bytes);
+    limits.fonts = std::make_shared<const FontSource>(config.font);
     return limits;
 }
 
 CheckedScene check_scene(const RenderRequest& request, const SceneLimits& limits,
                          const UnsupportedFeatures& unsupported) {
     CheckedScene checked;
-    ParsedScene parsed = parse_scene(request.text, limits.scene, limits.text, request.overrides);
+    ParsedScene parsed = parse_scene(request.text, limits.scene, limits.text, request.overrides, *limits.fonts);
     if (!parsed.scene) {
         checked.failure = parsed.is_json ? RenderFailure::invalid_scene : RenderFailure::not_json;
         checked.problems = std::move(parsed.problems);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <semaphore>
 #include <string>
@@ -58,6 +59,7 @@ using SceneRenderer = std::function<RenderedScene(Scene&&)>;
 struct SceneLimits {
     Limits scene;
     TextLimits text;
+    std::shared_ptr<const FontSource> fonts = std::make_shared<const FontSource>();
 };
 SceneLimits limits_of(const Config& config);
 

@@ -277,6 +277,65 @@ TEST(Linear, IsNeverAntialiased) {
             }
 }
 
+// A grey wall under an even sky: the free pixel beside it sees half the sky and more; the wall shows its albedo times that, to its very
+// middle, and nothing of the floor's albedo. A lamp's emission stays as it is.
+TEST(Solids, LitOnesShowAlbedoTimesTheLightBesideThem) {
+    Shape wall = shape(Rect{{12.2, 8.1}, {9, 30}, 0, 0});
+    wall.albedo = {0.5, 0.25, 0};
+    Shape lamp = shape(Circle{{30.1, 8.2}, 3}, {4, 3, 2});
+    lamp.albedo = Colour(0.1);
+    Scene scene = with(canvas(40, 16), {wall, lamp});
+    scene.sky.radiance = Colour(1);
+    scene.canvas.floor_albedo = {0.3, 0.3, 0.3};
+    const ImageF plain = render_linear(scene);
+    scene.output.solids = Solids::lit;
+    const ImageF lit = render_linear(scene);
+    const Image8 shown = render_display(scene);
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 40; ++x) {
+            const bool in_wall = std::abs(x + 0.5 - 12.2) <= 4.5;
+            const bool in_lamp = std::hypot(x + 0.5 - 30.1, y + 0.5 - 8.2) <= 3;
+            if (!in_wall && !in_lamp) {
+                for (int c = 0; c < 3; ++c) EXPECT_EQ(lit.at(x, y)[c], plain.at(x, y)[c]);
+            } else if (in_wall) {
+                // Columns 8 to 16 are solid: the nearest free ones are 7 and 17.
+                const float* beside = plain.at(x <= 12 ? 7 : 17, y);
+                EXPECT_NEAR(lit.at(x, y)[0], 0.5 / 0.3 * double(beside[0]), x == 12 ? 0.2 : 1e-5) << x << " " << y;
+                EXPECT_NEAR(lit.at(x, y)[1], 0.25 / 0.3 * double(beside[1]), x == 12 ? 0.1 : 1e-5) << x << " " << y;
+                EXPECT_EQ(lit.at(x, y)[2], 0);
+                if (x > 8 && x < 16) {
+                    EXPECT_NEAR(shown.at(x, y)[0], srgb_encode(double(lit.at(x, y)[0])), 1);
+                }
+            } else {
+                EXPECT_GT(lit.at(x, y)[0], 4.02f);
+                EXPECT_LT(lit.at(x, y)[0], 4.4f);
+            }
+        }
+}
+
+TEST(Solids, LitBitmapsShowTheirOwnColours) {
+    auto texels = std::make_shared<Texels>(Texels{2, 1, {255, 0, 0, 255, 0, 188, 0, 255}});
+    Shape bitmap = shape(Bitmap{texels, {4, 4}, {8, 4}, 0.5, 0.5, true});
+    Scene scene = with(canvas(16, 12), {bitmap});
+    scene.sky.radiance = Colour(1);
+    scene.output.solids = Solids::lit;
+    const ImageF lit = render_linear(scene);
+    EXPECT_NEAR(lit.at(5, 4)[0], 0.5 * double(lit.at(5, 3)[0]), 1e-5);
+    EXPECT_EQ(lit.at(5, 4)[1], 0);
+    EXPECT_NEAR(lit.at(10, 4)[1], 0.5 * srgb_decode(188) * double(lit.at(10, 3)[1]), 1e-5);
+    scene.shapes[0].geometry = Bitmap{texels, {4, 4}, {8, 4}, 1, 0.5, false};
+    EXPECT_EQ(render_linear(scene).at(5, 4)[0], 1);
+}
+
+TEST(Solids, ACanvasThatIsAllSolidIsBlackWithoutLight) {
+    Shape wall = shape(Rect{{8, 6}, {100, 100}, 0, 0});
+    wall.albedo = Colour(1);
+    Scene scene = with(canvas(16, 12), {wall});
+    scene.sky.radiance = Colour(1);
+    scene.output.solids = Solids::lit;
+    EXPECT_EQ(largest(render_linear(scene)), 0);
+}
+
 TEST(Picture, TheFirstRowIsTheTop) {
     // One lamp at the top left; the brightest pixel must be there, in both formats.
     Scene scene = with(canvas(30, 20), {shape(Circle{{2.6, 1.7}, 1.6}, Colour(1))});

@@ -550,7 +550,6 @@ TEST(Unsupported, NamesEachKeyAndWhatItHolds) {
     expect_refused("/render/method", "'hybrid'", [](Scene& s) { s.render.method = "hybrid"; });
     expect_refused("/render/bounces", "bounces", [](Scene& s) { s.render.bounces = 1; });
     expect_refused("/render/view", "'probes'", [](Scene& s) { s.render.view = "probes"; });
-    expect_refused("/output/solids", "lit", [](Scene& s) { s.output.solids = Solids::lit; });
     expect_refused("/output/tonemap", "'tony'", [](Scene& s) { s.output.tonemap = "tony"; });
 }
 

@@ -100,6 +100,38 @@ TEST(SceneJson, EverySetting) {
     EXPECT_EQ(scene.output.tonemap, "agx");
 }
 
+TEST(SceneJson, ASkysPictureIsAGradient) {
+    Image8 image(4, 3, 3);
+    for (int x = 0; x < 4; ++x) image.at(x, 1)[0] = std::uint8_t(60 * x);
+    image.at(2, 2)[1] = 255;
+    const auto sky = [&](const std::string& rest) { return good(document(R"(, "sky": {"image": ")" + data_url(encode_png(image)) + "\"" + rest + "}")).sky; };
+    const Sky middle = sky(R"(, "scale": 2)");
+    ASSERT_EQ(middle.gradient.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(middle.gradient[i].angle_deg, 45 + 90.0 * double(i));
+        const double s = 60.0 * double(i) / 255;
+        EXPECT_NEAR(middle.gradient[i].radiance.r, 2 * (s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4)), 1e-12);
+        EXPECT_EQ(middle.gradient[i].radiance.g, 0);
+    }
+    EXPECT_EQ(sky(R"(, "row": 2)").gradient[2].radiance, Colour(0, 1, 0));
+}
+
+TEST(SceneJson, AWideSkyKeepsItsMean) {
+    Image8 image(1000, 1, 3);
+    double sum = 0;
+    for (int x = 0; x < 1000; ++x) {
+        const int code = (x * 37) % 256;
+        image.at(x, 0)[1] = std::uint8_t(code);
+        const double s = code / 255.0;
+        sum += s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+    }
+    const Sky sky = good(document(R"(, "sky": {"image": ")" + data_url(encode_png(image)) + "\"}")).sky;
+    ASSERT_EQ(sky.gradient.size(), 256u);
+    double mean = 0;
+    for (const SkyStop& stop : sky.gradient) mean += stop.radiance.g / 256;
+    EXPECT_NEAR(mean, sum / 1000, 1e-12);
+}
+
 TEST(SceneJson, ExposureHasFourForms) {
     const auto output = [](const std::string& exposure) { return good(document(R"(, "output": {"exposure": )" + exposure + "}")).output; };
     EXPECT_EQ(output("2.5").exposure_ev, 2.5);

@@ -67,7 +67,7 @@ std::vector<Object> objects() {
     const std::pair<std::string, std::span<const std::string_view>> shapes[] = {
         {"circle", kCircleKeys}, {"ellipse", kEllipseKeys},   {"rect", kRectKeys},
         {"line", kLineKeys},     {"polyline", kPolylineKeys}, {"polygon", kPolygonKeys},
-        {"bitmap", kBitmapKeys}};
+        {"bitmap", kBitmapKeys}, {"path", kPathKeys},         {"text", kTextKeys}};
     for (const auto& [type, keys] : shapes) {
         list.push_back(
             {"/$defs/" + type, keys, with_shape(R"({"type": ")" + type + "\"}"), "/shapes/0"});
@@ -146,6 +146,8 @@ TEST(Schema, ValuesHaveTheParsersWords) {
         {"/properties/output/properties/look", words_of(known_looks())},
         {"/properties/output/properties/dither", words_of(kDithers)},
         {"/$defs/bitmap/properties/as", words_of(kUses)},
+        {"/$defs/path/properties/fill_rule", words_of(kFillRules)},
+        {"/$defs/text/properties/anchor", words_of(kAnchors)},
     };
     Words known{"/properties/output/properties/bit_depth"};  // numbers
     for (const auto& [pointer, expected] : words) {
