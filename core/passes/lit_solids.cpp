@@ -68,7 +68,7 @@ gl::Texture2D lit_solids(const Plan& plan, const Scene& scene, const DistanceFie
         for (int x = 0; x < size.x; ++x) {
             const std::size_t i = std::size_t(y) * std::size_t(size.x) + std::size_t(x);
             const std::int32_t shape = materials[in_grid(x, y)];
-            if (solid[i] == 0 || shape < 0) continue;
+            if (shape < 0) continue;
             const Colour albedo = albedo_at(scene.shapes[std::size_t(shape)], {view.x + (x + 0.5) * pixel, view.y + (y + 0.5) * pixel});
             const std::size_t from = std::size_t(nearest[i].y) * std::size_t(size.x) + std::size_t(nearest[i].x);
             for (std::size_t c = 0; c < 3; ++c) lit[4 * i + c] = static_cast<float>(albedo[int(c)]) * light[4 * from + c];

@@ -11,7 +11,7 @@ namespace penumbra {
 gl::Texture2D black_texel();
 
 // What solid pixels reflect for the eye (`solids: "lit"`): albedo times the mean radiance of the nearest free pixel, one texel a
-// pixel, in the units of `radiance`; 0 in free pixels. One black texel where nothing reflects. Works on the host: it is asked for
+// pixel, in the units of `radiance`. A free pixel holds the same of the shape nearest to it, which may cover some of it. One black texel where nothing reflects. Works on the host: it is asked for
 // pictures only, and needs what is nearest, which no device finds at once.
 gl::Texture2D lit_solids(const Plan& plan, const Scene& scene, const DistanceField& field, const gl::Texture2D& radiance);
 

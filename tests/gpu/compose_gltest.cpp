@@ -297,6 +297,11 @@ TEST(Solids, LitOnesShowAlbedoTimesTheLightBesideThem) {
             const bool in_lamp = std::hypot(x + 0.5 - 30.1, y + 0.5 - 8.2) <= 3;
             if (!in_wall && !in_lamp) {
                 for (int c = 0; c < 3; ++c) EXPECT_EQ(lit.at(x, y)[c], plain.at(x, y)[c]);
+                // The wall covers 0.3 of column 7, with its own light and not with darkness.
+                const double red = double(plain.at(x, y)[0]);
+                if (x == 7) {
+                    EXPECT_NEAR(shown.at(x, y)[0], srgb_encode(0.7 * red + 0.3 * 0.5 / 0.3 * red), 1) << y;
+                }
             } else if (in_wall) {
                 // Columns 8 to 16 are solid: the nearest free ones are 7 and 17.
                 const float* beside = plain.at(x <= 12 ? 7 : 17, y);

@@ -22,7 +22,7 @@ bool is_white(const std::uint8_t* p) { return p[0] == 255 && p[1] == 255 && p[2]
 TEST(Views, DistanceIsWhiteOnOutlinesWarmInsideColdOutside) {
     const Circle disc{{60.3, 40.2}, 20.4};
     const Image8 picture = view_of(with(canvas(120, 90), {shape(disc)}), "distance");
-    for (int y = 0; y < 60; ++y)
+    for (int y = 0; y < 56; ++y)
         for (int x = 0; x < 120; ++x) {
             const double d = std::hypot(x + 0.5 - 60.3, y + 0.5 - 40.2) - 20.4;
             const std::uint8_t* p = picture.at(x, y);
@@ -37,8 +37,8 @@ TEST(Views, DistanceIsWhiteOnOutlinesWarmInsideColdOutside) {
 }
 
 TEST(Views, ContoursStandWhereTheLegendSays) {
-    // A disc in the corner: the farthest pixel is about 200 from it, so that contours are 20 apart. They are darker than both sides.
-    const Image8 picture = view_of(with(canvas(160, 160), {shape(Circle{{0.5, 0.5}, 10})}), "distance");
+    // A disc in the corner: the farthest pixel is 158 from it, so that contours are 20 apart. They are darker than both sides.
+    const Image8 picture = view_of(with(canvas(120, 120), {shape(Circle{{0.5, 0.5}, 10})}), "distance");
     const auto sum = [&](int x) { return picture.at(x, 0)[0] + picture.at(x, 0)[1] + picture.at(x, 0)[2]; };
     for (const int contour : {20, 40, 60, 100}) {
         const int x = 10 + contour;  // the centre of pixel x is x away from the disc's

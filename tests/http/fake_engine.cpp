@@ -111,6 +111,10 @@ Engine fake_engine(std::shared_ptr<FakeControl> control) {
     };
     engine.unsupported = [](const Scene& scene, const Features&) {
         Problems problems;
+        // As if this build wrote no more than these two.
+        if (scene.output.format != "png" && scene.output.format != "pfm") {
+            problems.push_back({"/output/format", "not_supported_yet", "this format is not supported yet"});
+        }
         if (scene.output.tonemap != "none") {
             problems.push_back({"/output/tonemap", "not_supported_yet", "this tone map is not supported yet"});
         }

@@ -68,7 +68,7 @@ TEST(Outlines, AFurnaceInsideARing) {
             measured += double(picture.at(x, 24)[1]);
             expected += std::asin(14 / std::hypot(x + 0.5 - 26.3, 24.5 - 24.1)) / std::numbers::pi;
         }
-        EXPECT_NEAR(measured / expected, 1, 0.05) << method.name;
+        EXPECT_NEAR(measured / expected, 1, std::string(method.name) == "exact" ? 2e-3 : 0.1) << method.name;
         EXPECT_LT(off_truth(scene), method.nrmse) << method.name;
     }
 }
@@ -90,7 +90,14 @@ TEST(Outlines, ACircleOfAPathIsTheCircle) {
     const Scene path = parsed(R"("shapes": [{"type": "path", "emission": 3, "d": "M20.3 24.1a10 10 0 1 0 20 0a10 10 0 1 0-20 0"}])");
     const Scene circle = parsed(R"("shapes": [{"type": "circle", "emission": 3, "center": [30.3, 24.1], "radius": 10}])");
     // Within the tolerance of a twentieth of a pixel on ten.
-    EXPECT_LT(difference(render_linear(path), render_linear(circle)).max, 3 * 0.02);
+    const ImageF a = render_linear(path), b = render_linear(circle);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 64; ++x) {
+            const double d = std::hypot(x + 0.5 - 30.3, y + 0.5 - 24.1) - 10;
+            if (std::abs(d) > 0.06) {
+                EXPECT_NEAR(a.at(x, y)[0], b.at(x, y)[0], d < 1 ? 0.1 : 0.02) << x << " " << y;
+            }
+        }
 }
 
 TEST(Outlines, WhatOverlapsShowsNoSeam) {
@@ -143,9 +150,10 @@ TEST(SkyPicture, GoesRoundClockwiseFromTheRight) {
     const Scene scene = parsed(R"("shapes": [{"type": "rect", "center": [32, 24], "size": [20000, 4]}], "sky": {"image": ")" +
                                data_url(encode_png(row)) + "\"}");
     const ImageF picture = render_linear(scene);
-    EXPECT_LT(picture.at(32, 12)[0], 0.02);
-    EXPECT_NEAR(picture.at(32, 36)[0], 0.25, 0.26) << "half the circle at most";
-    EXPECT_GT(picture.at(32, 36)[0], 0.4);
+    // Above the wall (it ends with the domain, 32.5 to the left and 31.5 to the right, 9.5 below), white shows past its ends only.
+    const double past = (std::atan(9.5 / 32.5) + std::atan(9.5 / 31.5)) / (2 * std::numbers::pi);
+    EXPECT_NEAR(double(picture.at(32, 12)[0]), past, 0.005);
+    EXPECT_NEAR(double(picture.at(32, 36)[0]), 0.5, 0.005);
 }
 
 }  // namespace
