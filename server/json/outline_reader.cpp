@@ -58,8 +58,7 @@ Polygon OutlineReader::drawn(const Path& where, NodeId id, std::vector<Ring> rin
         auto filled = even_odd_of_nonzero(rings, 4 * limits_.max_points_per_shape);
         if (!filled) {
             reader_.report(where, id, "too_many", [] { return "is too intricate: it crosses itself too often, or too many of its edges lie side by side"; });
-            reader_.problems().silence(where.pointer());
-            return {};
+            return nothing(where, key);
         }
         rings = std::move(*filled);
     }

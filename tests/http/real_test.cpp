@@ -47,7 +47,7 @@ TEST(Real, CommandLineAndServiceGiveTheSameBytes) {
             EXPECT_EQ(std::get<Texels>(picture).width, 70);
             EXPECT_EQ(std::get<Texels>(picture).height, 50);
         } else {
-            const Bytes bytes = bytes_of(served->body);
+            const auto bytes = bytes_of(served->body);
             const auto picture = std::string(format) == "exr"   ? decode_exr(bytes)
                                  : std::string(format) == "hdr" ? decode_hdr(bytes)
                                  : std::string(format) == "npy" ? decode_npy(bytes)

@@ -428,6 +428,9 @@ TEST(OutlineShapes, WhatIsWrongIsTold) {
     std::string d = "M0 0";
     for (int i = 0; i < 16400; ++i) d += "l1 " + std::to_string(i % 2);
     EXPECT_THAT(problems(R"({"type": "path", "d": ")" + d + R"("})"), ElementsAre("/shapes/0/d too_many"));
+    std::string hatch = "M0 0";
+    for (int i = 0; i < 16000; ++i) hatch += i % 2 == 0 ? "L256 " + std::to_string(i * 0.016) : "L0 " + std::to_string(i * 0.016);
+    EXPECT_THAT(problems(R"({"type": "path", "d": ")" + hatch + R"("})"), ElementsAre("/shapes/0/d too_many"));
     const ParsedScene no_font = parse_scene(with_shape(R"({"type": "text", "text": "a", "position": [1, 1], "size": 9})"), {}, {}, {}, FontSource("/nowhere"));
     EXPECT_THAT(brief(no_font), ElementsAre("/shapes/0/text no_font"));
 }
