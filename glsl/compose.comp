@@ -6,6 +6,9 @@ layout(std140, binding = kComposeParamsBinding) uniform Params { ComposeParams p
 #include "lib/pixel.glsl"
 #include "lib/tonemap.glsl"
 
+// Which program this is: whether edges are mixed (2), solids show (1) or there are none (0). Its curve is kComposeTonemap.
+const int kEdges = 2;
+
 layout(local_size_x = kComposeGroupX, local_size_y = kComposeGroupY) in;
 layout(binding = kComposeImageBinding) writeonly uniform image2D picture_image;
 
@@ -23,9 +26,10 @@ vec3 floor_beside(ivec2 pixel) {
 }
 
 vec3 pixel_radiance(ivec2 pixel) {
-    if (params.has_shapes == 0) return floor_radiance(pixel);
+    if (kEdges == 0 || params.has_shapes == 0) return floor_radiance(pixel);
     float d = pixel_distance(pixel);
     bool solid = d <= 0.0;
+    if (kEdges == 1) return solid ? solid_radiance(pixel) : floor_radiance(pixel);
     float coverage = params.antialias != 0 ? clamp(0.5 - d, 0.0, 1.0) : (solid ? 1.0 : 0.0);
     if (coverage >= 1.0) return solid_radiance(pixel);
     vec3 free = solid ? floor_beside(pixel) : floor_radiance(pixel);
@@ -52,8 +56,9 @@ vec3 dithered(vec3 value, ivec2 pixel, float levels) {
 
 void main() {
     ivec2 texel = params.origin + ivec2(gl_GlobalInvocationID.xy);
-    ivec2 pixel = texel + ivec2(0, params.first_row);
-    if (pixel.x >= params.extent.x || pixel.y >= params.extent.y) return;
+    ivec2 size = imageSize(picture_image);
+    if (texel.x >= size.x || texel.y >= size.y) return;
+    ivec2 pixel = texel + params.first_pixel;
     vec3 radiance = max(pixel_radiance(pixel) * params.exposure, vec3(0.0));
     vec3 encoded = srgb_encode(clamp(tonemap(radiance, params.white), 0.0, 1.0));
     if (kComposeDither != 0) encoded = dithered(encoded, pixel, float(params.levels));

@@ -12,9 +12,9 @@ const int kComposeImageBinding = 0;  // rgba8 or rgba16 (display) or rgba32f (li
 const int kComposeRadianceUnit = 6;  // mean radiance, one texel a pixel
 const int kComposeDistanceUnit = 4;
 const int kComposeMaterialUnit = 5;
-const int kComposeLutUnit = 7;       // a tone curve of kTonemapTony: its slices, one below the other
-
+const int kComposeLightsUnit = 7;    // what point, spot and directional lights add, or one texel without them
 const int kComposeLitUnit = 8;       // what solid pixels reflect, one texel a pixel; one black texel: nothing
+const int kComposeLutUnit = 9;       // a tone curve of kTonemapTony: its slices, one below the other
 
 const int kTonemapNone = 0;
 const int kTonemapReinhard = 1;
@@ -44,10 +44,8 @@ struct ComposeParams {
     float radiance_scale; // what the radiance texture must be multiplied with
     float white;         // Reinhard extended: the radiance that becomes 1
     int has_shapes;
-    int first_row;       // of the canvas in the image: tall pictures are composed in bands
-    int pad0;
-    int pad1;
-    int pad2;
+    ivec2 first_pixel;   // of the canvas in the image: parts of it, and bands of tall pictures
+    ivec2 first_lit;     // the pixel of the radiance's first texel
 };
 
 #ifdef __cplusplus

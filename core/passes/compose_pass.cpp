@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "core/passes/compose_pass.h"
 
+#include <vector>
+
 #include "core/film/exposure.h"
 #include "glsl/compose.h"
 
@@ -24,19 +26,21 @@ int look_index(const std::string& name) {
     return glsl::kLookNone;
 }
 
-glsl::ComposeParams params_of(const Plan& plan, const Scene& scene, const gl::Texture2D& radiance, const DistanceField& field,
-                              int first_row, gl::Texture2D& out) {
+glsl::ComposeParams params_of(const Plan& plan, const Scene& scene, const FrameLight& light, glm::ivec2 first, gl::Texture2D& out) {
     glsl::ComposeParams params{};
     params.extent = plan.canvas;
     params.border = plan.grid.border;
     params.antialias = scene.output.antialias ? 1 : 0;
     params.floor_albedo = glm::vec4(glm::vec3(scene.canvas.floor_albedo), 1.0f);
     params.radiance_scale = static_cast<float>(plan.radiance_scale);
-    params.first_row = first_row;
+    params.first_pixel = first;
+    // hrc finds the light of the whole canvas.
+    params.first_lit = plan.hrc.active() ? glm::ivec2(0) : plan.lit.first;
     params.has_shapes = scene.shapes.empty() ? 0 : 1;
-    radiance.bind_texture(glsl::kComposeRadianceUnit);
-    field.distance.bind_texture(glsl::kComposeDistanceUnit);
-    field.material.bind_texture(glsl::kComposeMaterialUnit);
+    light.radiance.bind_texture(glsl::kComposeRadianceUnit);
+    light.lights.bind_texture(glsl::kComposeLightsUnit);
+    light.field.distance.bind_texture(glsl::kComposeDistanceUnit);
+    light.field.material.bind_texture(glsl::kComposeMaterialUnit);
     out.bind_image(glsl::kComposeImageBinding, GL_WRITE_ONLY);
     return params;
 }
@@ -51,9 +55,7 @@ PassWork work_of(int dispatches, const gl::Texture2D& out) {
 }  // namespace
 
 ComposePass::ComposePass(const std::string& shader_dir)
-    : shader_dir_(shader_dir), linear_("linear.comp", sizeof(glsl::ComposeParams), shader_dir) {
-    display_for(OutputSettings{});  // a shader that does not build is told at the start
-}
+    : display_("compose.comp", sizeof(glsl::ComposeParams), shader_dir), linear_("linear.comp", sizeof(glsl::ComposeParams), shader_dir) {}
 
 void ComposePass::set_tone_lut(const ToneLut& lut) {
     std::vector<glm::vec4> texels;
@@ -63,31 +65,31 @@ void ComposePass::set_tone_lut(const ToneLut& lut) {
     tone_lut_ = std::move(texture);
 }
 
-gl::ComputeProgram& ComposePass::display_for(const OutputSettings& output) {
-    const Curve key = {tonemap_index(output.tonemap), look_index(output.look.value_or("none")), output.dither == Dither::none ? 0 : 1};
-    const auto found = display_.find(key);
-    if (found != display_.end()) return found->second;
-    const gl::ShaderConstants constants = {{"kComposeTonemap", key[0]}, {"kComposeLook", key[1]}, {"kComposeDither", key[2]}};
-    return display_.emplace(key, gl::ComputeProgram("compose.comp", sizeof(glsl::ComposeParams), shader_dir_, constants)).first->second;
-}
-
-PassWork ComposePass::display(const Plan& plan, const Scene& scene, double exposure, const gl::Texture2D& radiance,
-                              const DistanceField& field, const PassSettings& settings, int first_row, gl::Texture2D& out) {
-    gl::ComputeProgram& program = display_for(scene.output);
-    glsl::ComposeParams params = params_of(plan, scene, radiance, field, first_row, out);
+PassWork ComposePass::display(const Plan& plan, const Scene& scene, double exposure, const FrameLight& light, const PassSettings& settings,
+                              glm::ivec2 first, gl::Texture2D& out) {
+    // One curve a program, whatever is skipped: all of them in one would cost all of them.
+    const OutputSettings& output = scene.output;
+    gl::ShaderConstants constants = scene_constants(plan.needs);
+    constants.emplace_back("kComposeTonemap", tonemap_index(output.tonemap));
+    constants.emplace_back("kComposeLook", look_index(output.look.value_or("none")));
+    constants.emplace_back("kComposeDither", output.dither == Dither::none ? 0 : 1);
+    if (!plan.needs.general) constants.emplace_back("kEdges", scene.shapes.empty() ? 0 : output.antialias ? 2 : 1);
+    gl::ComputeProgram& program = display_.of(constants);
+    glsl::ComposeParams params = params_of(plan, scene, light, first, out);
     params.levels = out.format() == GL_RGBA16 ? 65535 : 255;
     params.exposure = static_cast<float>(exposure);
-    params.white = static_cast<float>(scene.output.white.value_or(kDefaultWhite));
+    params.white = static_cast<float>(output.white.value_or(kDefaultWhite));
     lit_.bind_texture(glsl::kComposeLitUnit);
     if (tone_lut_) tone_lut_.bind_texture(glsl::kComposeLutUnit);
     return work_of(program.dispatch(params, out.size(), settings.pixels), out);
 }
 
-PassWork ComposePass::linear(const Plan& plan, const Scene& scene, const gl::Texture2D& radiance, const DistanceField& field,
-                             const PassSettings& settings, int first_row, gl::Texture2D& out) {
-    const glsl::ComposeParams params = params_of(plan, scene, radiance, field, first_row, out);
+PassWork ComposePass::linear(const Plan& plan, const Scene& scene, const FrameLight& light, const PassSettings& settings, glm::ivec2 first,
+                             gl::Texture2D& out) {
+    gl::ComputeProgram& program = linear_.of(scene_constants(plan.needs));
+    const glsl::ComposeParams params = params_of(plan, scene, light, first, out);
     lit_.bind_texture(glsl::kComposeLitUnit);
-    return work_of(linear_.dispatch(params, out.size(), settings.pixels), out);
+    return work_of(program.dispatch(params, out.size(), settings.pixels), out);
 }
 
 }  // namespace penumbra

@@ -45,14 +45,17 @@ gl::Texture2D black_texel() {
     return texture;
 }
 
-gl::Texture2D lit_solids(const Plan& plan, const Scene& scene, const DistanceField& field, const gl::Texture2D& radiance) {
-    // A scene without light has one texel of it.
-    const bool dark = radiance.size() != plan.canvas;
-    if (dark || std::none_of(scene.shapes.begin(), scene.shapes.end(), reflects)) return black_texel();
-    const auto distances = read<float>(field.distance, GL_RED, GL_FLOAT, 1);
-    const auto materials = read<std::int32_t>(field.material, GL_RED_INTEGER, GL_INT, 1);
-    const auto light = read<float>(radiance, GL_RGBA, GL_FLOAT, 4);
+gl::Texture2D lit_solids(const Plan& plan, const Scene& scene, const FrameLight& light) {
+    if (plan.shape_slices.empty() || std::none_of(scene.shapes.begin(), scene.shapes.end(), reflects)) return black_texel();
+    const auto distances = read<float>(light.field.distance, GL_RED, GL_FLOAT, 1);
+    const auto materials = read<std::int32_t>(light.field.material, GL_RED_INTEGER, GL_INT, 1);
+    const auto radiance = read<float>(light.radiance, GL_RGBA, GL_FLOAT, 4), lights = read<float>(light.lights, GL_RGBA, GL_FLOAT, 4);
     const glm::ivec2 size = plan.canvas;
+    // One texel stands for a light that is the same everywhere.
+    const auto sample = [](const gl::Texture2D& texture, const std::vector<float>& values, glm::ivec2 at, std::size_t channel) {
+        at = glm::min(at, texture.size() - 1);
+        return double(values[4 * (std::size_t(at.y) * std::size_t(texture.size().x) + std::size_t(at.x)) + channel]);
+    };
     const auto in_grid = [&](int x, int y) {
         return std::size_t(y + plan.grid.border.y) * std::size_t(plan.grid.size.x) + std::size_t(x + plan.grid.border.x);
     };
@@ -70,8 +73,10 @@ gl::Texture2D lit_solids(const Plan& plan, const Scene& scene, const DistanceFie
             const std::int32_t shape = materials[in_grid(x, y)];
             if (shape < 0) continue;
             const Colour albedo = albedo_at(scene.shapes[std::size_t(shape)], {view.x + (x + 0.5) * pixel, view.y + (y + 0.5) * pixel});
-            const std::size_t from = std::size_t(nearest[i].y) * std::size_t(size.x) + std::size_t(nearest[i].x);
-            for (std::size_t c = 0; c < 3; ++c) lit[4 * i + c] = static_cast<float>(albedo[int(c)]) * light[4 * from + c];
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double arriving = plan.radiance_scale * sample(light.radiance, radiance, nearest[i], c) + sample(light.lights, lights, nearest[i], c);
+                lit[4 * i + c] = static_cast<float>(albedo[int(c)] * arriving);
+            }
         }
     gl::Texture2D texture(GL_RGBA32F, size);
     texture.write(GL_RGBA, GL_FLOAT, lit.data());

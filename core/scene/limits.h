@@ -36,6 +36,7 @@ struct Limits {
     double min_key = 1e-3, max_key = 10;
     double min_white = 1e-3, max_white = 1e9;  // as radiance
     int max_bounces = 64;          // the format's own bound
+    int max_converging_bounces = 256;  // of bounces: "converged"
 };
 
 }  // namespace penumbra

@@ -103,6 +103,7 @@ struct Shape {
 struct PointLight {
     Point position{0};
     Colour intensity{0};  // radiant intensity per radian
+    double radius = 0;    // more than 0: a disc that shines, see core/scene/lower.h
 };
 
 struct SpotLight {
@@ -135,9 +136,15 @@ struct ViewRect {
     double x = 0, y = 0, w = 0, h = 0;  // world units
 };
 
+// A part of the canvas.
+struct PixelRect {
+    int x = 0, y = 0, w = 0, h = 0;  // pixels
+};
+
 struct Canvas {
     int width = 0;   // pixels
     int height = 0;  // pixels
+    std::optional<PixelRect> region;  // the part that becomes the picture; default: all of it
     std::optional<ViewRect> view;  // default: one world unit is one pixel
     double margin = 0;             // world units
     Colour floor_albedo{1};
@@ -145,6 +152,7 @@ struct Canvas {
     ViewRect view_or_default() const {
         return view ? *view : ViewRect{0, 0, double(width), double(height)};
     }
+    PixelRect region_or_all() const { return region ? *region : PixelRect{0, 0, width, height}; }
     // Side of a pixel in world units. Pixels are square once the scene is validated.
     double pixel_size() const { return view_or_default().w / width; }
 };
@@ -164,8 +172,11 @@ struct Camera {
 struct RenderSettings {
     std::string method = "auto";
     Quality quality = Quality::standard;
-    int bounces = 0;
+    int bounces = 0;             // at most, when `converged`
+    bool converged = false;      // bounces end before, once nothing changes by more than `tolerance`
+    double tolerance = 1e-3;     // share of the brightest surface's radiance
     Skip skip = Skip::all;
+    std::uint32_t keep = 0;  // bits of core/plan/saving.h: work that is done all the same, to measure what it costs
     std::string view = "final";
 };
 

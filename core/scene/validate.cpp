@@ -46,6 +46,16 @@ void validate_domain(RangeChecks& checks, const Path& where, const Canvas& canva
                    number_text(limits.max_domain_pixels) + " in all are allowed");
 }
 
+void validate_region(RangeChecks& checks, const Path& where, const Canvas& canvas) {
+    const PixelRect& region = *canvas.region;
+    if (checks.between(where.index(0), region.x, 0, canvas.width - 1)) {
+        checks.between(where.index(2), region.w, 1, canvas.width - region.x);
+    }
+    if (checks.between(where.index(1), region.y, 0, canvas.height - 1)) {
+        checks.between(where.index(3), region.h, 1, canvas.height - region.y);
+    }
+}
+
 void validate_canvas(RangeChecks& checks, const Path& where, const Canvas& canvas) {
     const Limits& limits = checks.limits();
     const bool width =
@@ -57,6 +67,9 @@ void validate_canvas(RangeChecks& checks, const Path& where, const Canvas& canva
         checks.between(where.key("margin"), canvas.margin, 0, limits.max_coordinate);
     const Path floor = where.key("floor");
     checks.colour(floor.key("albedo"), canvas.floor_albedo, 1);
+    if (width && height && canvas.region) {
+        validate_region(checks, where.key("region"), canvas);
+    }
     if (!width || !height || !view) {
         return;
     }
@@ -128,6 +141,7 @@ public:
     LightChecks(RangeChecks& checks, const Path& where) : checks_(checks), where_(where) {}
 
     void operator()(const PointLight& light) {
+        checks_.between(where_.key("radius"), light.radius, 0.0, checks_.limits().max_coordinate);
         checks_.coordinates(where_.key("position"), light.position);
         colour("intensity", light.intensity);
     }
@@ -183,7 +197,8 @@ void validate_word(RangeChecks& checks, const Path& where, std::string_view word
 void validate_render(RangeChecks& checks, const Path& where, const RenderSettings& render) {
     validate_word(checks, where.key("method"), render.method,
                   is_known_word(render.method, known_methods()), known_methods());
-    checks.between(where.key("bounces"), render.bounces, 0, checks.limits().max_bounces);
+    if (!render.converged) checks.between(where.key("bounces"), render.bounces, 0, checks.limits().max_bounces);
+    checks.between(where.key("tolerance"), render.tolerance, 1e-6, 1);
     validate_word(checks, where.key("view"), render.view, is_known_view(render.view),
                   known_views());
 }

@@ -74,6 +74,11 @@ private:
                                            "a rectangle of four numbers [x, y, width, height]");
             canvas.view = ViewRect{v[0], v[1], v[2], v[3]};
         }
+        if (const NodeId region = members.find("region"); region != kNoNode) {
+            const auto r = reader_.integers(where.key("region"), region, 4,
+                                            "a part of the canvas in four whole numbers [x, y, width, height]");
+            canvas.region = PixelRect{r[0], r[1], r[2], r[3]};
+        }
         members.number("margin", canvas.margin);
         const Path floor = where.key("floor");
         if (const NodeId floor_id = members.find("floor"); is_object(floor, floor_id)) {
@@ -325,6 +330,7 @@ private:
             PointLight light;
             members.need_pair("position", "a point [x, y]", light.position);
             members.need_colour("intensity", light.intensity);
+            members.number("radius", light.radius);
             return light;
         }
         if (*type == 1) {
@@ -359,12 +365,24 @@ private:
         if (const auto quality = read_choice(members, where, "quality", kQualities)) {
             render.quality = std::array{Quality::draft, Quality::standard, Quality::high}[*quality];
         }
-        members.integer("bounces", render.bounces,
-                        "from 0 to " + std::to_string(limits_.max_bounces));
+        read_bounces(members, where, render);
+        members.number("tolerance", render.tolerance);
         if (const auto skip = read_choice(members, where, "skip", kSkips)) {
             render.skip = *skip == 0 ? Skip::all : Skip::none;
         }
         members.string("view", render.view);
+    }
+
+    void read_bounces(const Members& members, const Path& where, RenderSettings& render) {
+        const NodeId id = members.find("bounces");
+        if (id != kNoNode && reader_.node(id).kind == NodeKind::string) {
+            constexpr std::string_view kWords[] = {"converged"};
+            render.converged = reader_.choice(where.key("bounces"), id, kWords).has_value();
+            render.bounces = limits_.max_converging_bounces;
+            return;
+        }
+        members.integer("bounces", render.bounces,
+                        "from 0 to " + std::to_string(limits_.max_bounces) + ", or \"converged\"");
     }
 
     void read_output(const Path& where, NodeId id, OutputSettings& output) {

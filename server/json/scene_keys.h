@@ -9,11 +9,12 @@ namespace penumbra {
 
 inline constexpr std::string_view kSceneKeys[] = {"version", "canvas", "sky",   "shapes",
                                                   "lights",  "render", "output"};
-inline constexpr std::string_view kCanvasKeys[] = {"width", "height", "view", "margin", "floor"};
+inline constexpr std::string_view kCanvasKeys[] = {"width", "height", "view",
+                                                   "region", "margin", "floor"};
 inline constexpr std::string_view kFloorKeys[] = {"albedo"};
 inline constexpr std::string_view kSkyKeys[] = {"radiance", "gradient", "image", "row", "scale"};
 inline constexpr std::string_view kStopKeys[] = {"angle", "radiance"};
-inline constexpr std::string_view kRenderKeys[] = {"method", "quality", "bounces", "skip", "view"};
+inline constexpr std::string_view kRenderKeys[] = {"method", "quality", "bounces", "tolerance", "skip", "view"};
 inline constexpr std::string_view kOutputKeys[] = {"format", "bit_depth", "antialias",
                                                    "solids", "exposure",  "tonemap",
                                                    "look",   "white",     "dither"};
@@ -42,7 +43,7 @@ inline constexpr std::string_view kPathKeys[] = {"type", "emission", "albedo", "
 inline constexpr std::string_view kTextKeys[] = {"type", "emission", "albedo", "text", "position", "size", "anchor"};
 
 inline constexpr std::string_view kLightTypes[] = {"point", "spot", "directional"};
-inline constexpr std::string_view kPointLightKeys[] = {"type", "position", "intensity"};
+inline constexpr std::string_view kPointLightKeys[] = {"type", "position", "intensity", "radius"};
 inline constexpr std::string_view kSpotKeys[] = {"type",        "position",    "direction",
                                                  "inner_angle", "outer_angle", "intensity"};
 inline constexpr std::string_view kDirectionalKeys[] = {"type", "direction", "irradiance"};

@@ -187,6 +187,28 @@ std::vector<double> ValueReader::numbers(const Path& where, NodeId id, std::size
     return values;
 }
 
+std::vector<int> ValueReader::integers(const Path& where, NodeId id, std::size_t count,
+                                       std::string_view form) {
+    std::vector<int> values(count, 0);
+    if (!expect(where, id, NodeKind::array, form)) {
+        return values;
+    }
+    if (node(id).child_count != count) {
+        report(where, id, "wrong_length", [&] {
+            return "must be " + std::string(form) + ", holds " +
+                   std::to_string(node(id).child_count) +
+                   (node(id).child_count == 1 ? " value" : " values");
+        });
+        return values;
+    }
+    NodeId element = node(id).first_child;
+    for (std::size_t i = 0; i < count; ++i) {
+        values[i] = integer(where.index(i), element, "within the canvas");
+        element = node(element).next_sibling;
+    }
+    return values;
+}
+
 Point ValueReader::pair(const Path& where, NodeId id, std::string_view form) {
     // Points come by the ten thousand: the usual case takes no memory.
     const Node& list = node(id);

@@ -318,6 +318,42 @@ TEST(Solids, LitOnesShowAlbedoTimesTheLightBesideThem) {
         }
 }
 
+// A part of the canvas is the crop of the whole, though both ask for what lies outside of it.
+TEST(Solids, LitAndAutomaticPicturesOfARegionAreItsCrop) {
+    Shape wall = shape(Rect{{20.2, 15.1}, {22, 18}, 0, 0});
+    wall.albedo = {0.5, 0.25, 0.7};
+    Scene scene = with(canvas(60, 40), {wall, shape(Circle{{52.1, 8.2}, 4}, {9, 8, 7})});
+    scene.sky.radiance = Colour(0.1);
+    scene.lights.push_back(PointLight{{8.2, 33.1}, Colour(4)});
+    scene.output.solids = Solids::lit;
+    scene.output.auto_key = kDefaultKey;
+    const Image8 whole = render_display(scene);
+    scene.canvas.region = PixelRect{14, 10, 12, 9};  // inside the wall
+    const Image8 part = render_display(scene);
+    ASSERT_EQ(part.width, 12);
+    ASSERT_EQ(part.height, 9);
+    int bright = 0;
+    for (int y = 0; y < 9; ++y)
+        for (int x = 0; x < 12; ++x)
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(part.at(x, y)[c], whole.at(x + 14, y + 10)[c], 1);
+                bright += part.at(x, y)[c] > 10;
+            }
+    EXPECT_GT(bright, 200);
+}
+
+// Lights without a size count: far from everything else, the wall beside a lamp shows albedo times what the floor gets.
+TEST(Solids, LitOnesShowPointLightsToo) {
+    Shape wall = shape(Rect{{20.2, 15.1}, {10, 200}, 0, 0});
+    wall.albedo = Colour(0.5);
+    Scene scene = with(canvas(40, 30), {wall});
+    scene.lights.push_back(PointLight{{5.2, 15.1}, Colour(20)});
+    scene.output.solids = Solids::lit;
+    const ImageF lit = render_linear(scene);
+    EXPECT_GT(lit.at(14, 15)[0], 0.3f);
+    EXPECT_NEAR(lit.at(16, 15)[0], 0.5 * double(lit.at(14, 15)[0]), 1e-5);
+}
+
 TEST(Solids, LitBitmapsShowTheirOwnColours) {
     auto texels = std::make_shared<Texels>(Texels{2, 1, {255, 0, 0, 255, 0, 188, 0, 255}});
     Shape bitmap = shape(Bitmap{texels, {4, 4}, {8, 4}, 0.5, 0.5, true});

@@ -72,7 +72,8 @@ Offsets exact_fields() {
             FIELD(ExactParams, floor_share), FIELD(ExactParams, ask_first), FIELD(ExactParams, strict_dark),
             FIELD(ExactParams, pad0), FIELD(ExactParams, pad1), FIELD(ExactParams, root_counts),
             FIELD(ExactParams, root_lights), FIELD(ExactParams, wide), FIELD(ExactParams, pad2),
-            FIELD(ExactParams, pad5), FIELD(ExactParams, pad6)};
+            FIELD(ExactParams, pad5), FIELD(ExactParams, pad6), FIELD(ExactParams, window),
+            FIELD(ExactParams, fill_first), FIELD(ExactParams, fill_row), FIELD(ExactParams, pad7)};
 }
 
 Offsets compose_fields() {
@@ -81,8 +82,7 @@ Offsets compose_fields() {
             FIELD(ComposeParams, levels),      FIELD(ComposeParams, floor_albedo),
             FIELD(ComposeParams, exposure),     FIELD(ComposeParams, radiance_scale),
             FIELD(ComposeParams, white),        FIELD(ComposeParams, has_shapes),
-            FIELD(ComposeParams, first_row),    FIELD(ComposeParams, pad0),
-            FIELD(ComposeParams, pad1),         FIELD(ComposeParams, pad2)};
+            FIELD(ComposeParams, first_pixel),  FIELD(ComposeParams, first_lit)};
 }
 
 std::vector<Layout> layouts() {
@@ -116,14 +116,14 @@ std::vector<Layout> layouts() {
         {"resolve.comp", sizeof(glsl::ResolveParams),
          {FIELD(ResolveParams, origin), FIELD(ResolveParams, extent), FIELD(ResolveParams, probes),
           FIELD(ResolveParams, tiles), FIELD(ResolveParams, texel), FIELD(ResolveParams, first_probe),
-          FIELD(ResolveParams, spacing), FIELD(ResolveParams, aligned), FIELD(ResolveParams, pad1),
-          FIELD(ResolveParams, pad2)},
+          FIELD(ResolveParams, spacing), FIELD(ResolveParams, aligned), FIELD(ResolveParams, first_pixel)},
          glsl::kResolveGroupX, glsl::kResolveGroupY},
         {"reference.comp", sizeof(glsl::ReferenceParams),
          {FIELD(ReferenceParams, origin), FIELD(ReferenceParams, extent), FIELD(ReferenceParams, border),
           FIELD(ReferenceParams, shape_count), FIELD(ReferenceParams, ray_count), FIELD(ReferenceParams, first_ray),
           FIELD(ReferenceParams, end_ray), FIELD(ReferenceParams, sky_first), FIELD(ReferenceParams, is_last),
-          FIELD(ReferenceParams, domain), FIELD(ReferenceParams, sky)},
+          FIELD(ReferenceParams, domain), FIELD(ReferenceParams, sky), FIELD(ReferenceParams, first_pixel),
+          FIELD(ReferenceParams, pad0)},
          glsl::kReferenceGroupX, glsl::kReferenceGroupY},
         {"exact_lists.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
         {"exact_solve.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactSolveGroupX, glsl::kExactGroupY},

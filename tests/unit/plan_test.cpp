@@ -12,6 +12,7 @@
 #include "core/device_error.h"
 #include "core/plan/pack.h"
 #include "core/plan/plan.h"
+#include "core/plan/saving.h"
 #include "core/plan/sky.h"
 #include "core/plan/support.h"
 #include "core/scene/limits.h"
@@ -252,22 +253,29 @@ TEST(MakePlan, SaysWhatItSkipsAndWhy) {
     Scene scene = scene_of(64, 48);
     scene.render.method = "exact";
     const Plan unlit = make_plan(scene, {});
-    EXPECT_NE(skipped(unlit, "points").find("nothing emits"), std::string::npos);
+    EXPECT_NE(skipped(unlit, "all passes").find("nothing emits"), std::string::npos);
     for (const SkippedWork& work : unlit.skipped) EXPECT_GT(work.saved, 0) << work.what;
 
     scene.render.method = "rc";
     const Plan empty = make_plan(scene, {});
-    EXPECT_NE(skipped(empty, "distance pass").find("no shapes"), std::string::npos);
-    EXPECT_NE(skipped(empty, "jump flooding").find("no bitmaps"), std::string::npos);
-    EXPECT_NE(skipped(empty, "cascades").find("nothing emits"), std::string::npos);
+    EXPECT_NE(skipped(empty, "all passes").find("nothing emits"), std::string::npos);
     EXPECT_TRUE(empty.cascades.empty());
     EXPECT_FALSE(empty.resolve);
-    for (const SkippedWork& work : empty.skipped) EXPECT_GT(work.saved, 0) << work.what;
+
+    scene.render.keep = std::uint32_t(Saving::constant);
+    const Plan dark = make_plan(scene, {});
+    EXPECT_FALSE(dark.constant);
+    EXPECT_NE(skipped(dark, "distance pass").find("no shapes"), std::string::npos);
+    EXPECT_NE(skipped(dark, "jump flooding").find("no bitmaps"), std::string::npos);
+    EXPECT_NE(skipped(dark, "cascades").find("no light"), std::string::npos);
+    EXPECT_EQ(dark.cascades.size(), 1u);
+    for (const SkippedWork& work : dark.skipped) EXPECT_GT(work.saved, 0) << work.what;
+    scene.render.keep = 0;
 
     scene.shapes.push_back(shape_of(Circle{{5, 5}, 2}, Colour(0, 0, 1e-3)));
     const Plan lit = make_plan(scene, {});
     EXPECT_EQ(skipped(lit, "distance pass"), "");
-    EXPECT_EQ(skipped(lit, "cascades"), "");
+    EXPECT_EQ(skipped(lit, "cascades"), "") << "the lamp is in a corner";
     EXPECT_NE(skipped(lit, "resolve"), "");
     EXPECT_FALSE(lit.cascades.empty());
 
@@ -312,6 +320,7 @@ TEST(MakePlan, RefusesWhatTheDeviceCannotHold) {
     Scene scene = scene_of(8192, 8192);
     scene.render.method = "rc";
     scene.sky.radiance = Colour(1);
+    scene.shapes.push_back(shape_of(Circle{{5, 5}, 2}));
     EXPECT_NO_THROW(make_plan(scene, {}));
     scene.render.quality = Quality::high;
     try {
@@ -546,9 +555,11 @@ TEST(Unsupported, NamesEachKeyAndWhatItHolds) {
         EXPECT_NE(problems[0].message.find("not supported"), std::string::npos) << problems[0].message;
         EXPECT_NE(problems[0].message.find(named), std::string::npos) << problems[0].message;
     };
-    expect_refused("/lights", "lights", [](Scene& s) { s.lights.push_back(PointLight{{1, 1}, Colour(1)}); });
     expect_refused("/render/method", "'hybrid'", [](Scene& s) { s.render.method = "hybrid"; });
-    expect_refused("/render/bounces", "bounces", [](Scene& s) { s.render.bounces = 1; });
+    expect_refused("/render/bounces", "bounces with the method 'rc'", [](Scene& s) {
+        s.render.bounces = 1;
+        s.render.method = "rc";
+    });
     expect_refused("/render/view", "'probes'", [](Scene& s) { s.render.view = "probes"; });
     expect_refused("/output/tonemap", "'tony'", [](Scene& s) { s.output.tonemap = "tony"; });
 }

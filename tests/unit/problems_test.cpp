@@ -221,7 +221,7 @@ TEST(Problems, NumbersThatNoIntegerHoldsAreToldTheRealLimit) {
          "must be from 1 to 8192, is 3000000001"},
         {R"({"version": 1, "canvas": {"width": 4, "height": -1e300}})",
          "must be from 1 to 8192, is -1e+300"},
-        {document(R"(, "render": {"bounces": 2147483648})"), "must be from 0 to 64, is 2147483648"},
+        {document(R"(, "render": {"bounces": 2147483648})"), "must be from 0 to 64, or \"converged\", is 2147483648"},
         {document(R"(, "output": {"bit_depth": 1e10})"), "must be 8, 16 or 32, is 1e+10"},
     };
     for (const auto& [text, message] : cases) {

@@ -181,7 +181,7 @@ TEST(Schema, ListsHaveTheParsersLimits) {
     EXPECT_EQ(at("/$defs/polyline/properties/points/maxItems"), limits.max_points_per_shape);
     EXPECT_EQ(at("/properties/canvas/properties/width/maximum"), limits.max_canvas_side_px);
     EXPECT_EQ(at("/properties/canvas/properties/height/maximum"), limits.max_canvas_side_px);
-    EXPECT_EQ(at("/properties/render/properties/bounces/maximum"), limits.max_bounces);
+    EXPECT_EQ(at("/properties/render/properties/bounces/anyOf/0/maximum"), limits.max_bounces);
     EXPECT_EQ(at("/properties/output/properties/exposure/anyOf/0/maximum"), limits.max_exposure_ev);
     const auto range = [&](const std::string& pointer, double low, double high) {
         EXPECT_EQ(at(pointer + "/minimum"), low) << pointer;
