@@ -2,14 +2,13 @@
 #include "core/renderer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <numbers>
 #include <optional>
 #include <thread>
 #include <type_traits>
 
+#include "core/film/exposure.h"
 #include "core/gl/context.h"
 #include "core/gl/loop_limit.h"
 #include "core/gl/storage_buffer.h"
@@ -23,6 +22,8 @@
 #include "core/passes/hrc_pass.h"
 #include "core/passes/jump_flood_pass.h"
 #include "core/passes/rc_fix_pass.h"
+#include "core/passes/recorder.h"
+#include "core/passes/lit_solids.h"
 #include "core/passes/reference_pass.h"
 #include "core/passes/resolve_pass.h"
 #include "core/passes/scene_buffers.h"
@@ -30,7 +31,10 @@
 #include "core/plan/shape_lists.h"
 #include "core/plan/skip.h"
 #include "core/scene/lower.h"
+#include "core/scene/words.h"
+#include "core/views/views.h"
 #include "glsl/cascade.h"
+#include "glsl/distance.h"
 
 namespace penumbra {
 namespace {
@@ -38,96 +42,32 @@ namespace {
 // Two renders of 4096 x 4096.
 constexpr std::size_t kPoolBytes = std::size_t(1) << 30;
 
-using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-// Processor time of all threads of this process.
-double cpu_ms_now() {
-    timespec time{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return 1e3 * double(time.tv_sec) + 1e-6 * double(time.tv_nsec);
-}
-
-// Records each pass's time and size while the frame runs. Bands of one pass add up in one record.
-class Recorder {
-public:
-    explicit Recorder(gl::PassTimer& timer) : timer_(timer) { timer_.reset(); }
-
-    template <class Run>
-    void pass(const std::string& name, glm::ivec2 extent, Run&& run) {
-        const Clock::time_point start = Clock::now();
-        const double cpu_start = cpu_ms_now();
-        timer_.mark();
-        const PassWork work = run();
-        timer_.mark();
-        gl::check_errors(name.c_str());
-        PassStats& stats = add(name, extent, ms_since(start), cpu_ms_now() - cpu_start);
-        stats.dispatches += static_cast<std::uint64_t>(work.dispatches);
-        stats.rays += work.rays;
-        stats.bytes += work.bytes;
-        stats.points += work.points;
-        marked_.push_back(static_cast<std::size_t>(&stats - passes_.data()));
-    }
-
-    template <class Run>
-    void host(const std::string& name, glm::ivec2 extent, Run&& run) {
-        const Clock::time_point start = Clock::now();
-        const double cpu_start = cpu_ms_now();
-        run();
-        add(name, extent, ms_since(start), cpu_ms_now() - cpu_start);
-    }
-
-    std::vector<PassStats> finish() {
-        const std::vector<double> device_ms = timer_.read();
-        for (std::size_t i = 0; i < marked_.size() && i < device_ms.size(); ++i) passes_[marked_[i]].gpu_ms += device_ms[i];
-        return std::move(passes_);
-    }
-
-private:
-    PassStats& add(const std::string& name, glm::ivec2 extent, double wall_ms, double cpu_ms) {
-        auto found = std::find_if(passes_.begin(), passes_.end(), [&](const PassStats& p) { return p.name == name; });
-        if (found == passes_.end()) {
-            passes_.emplace_back();
-            passes_.back().name = name;
-            passes_.back().width = extent.x;
-            found = passes_.end() - 1;
-        }
-        found->height += extent.y;
-        found->wall_ms += wall_ms;
-        found->cpu_ms += cpu_ms;
-        return *found;
-    }
-
-    gl::PassTimer& timer_;
-    std::vector<PassStats> passes_;
-    std::vector<std::size_t> marked_;  // the pass of each pair of marks
-};
+using Pixels = std::variant<Image8, Image16, ImageF>;
 
 // Collects the bands of the picture, without their alpha.
 class Reader {
 public:
-    Reader(glm::ivec2 canvas, bool linear) {
-        if (linear)
-            picture_ = ImageF(canvas.x, canvas.y, 3);
+    Reader(glm::ivec2 size, GLenum format) {
+        if (format == GL_RGBA32F)
+            picture_ = ImageF(size.x, size.y, 3);
+        else if (format == GL_RGBA16)
+            picture_ = Image16(size.x, size.y, 3);
         else
-            picture_ = Image8(canvas.x, canvas.y, 3);
+            picture_ = Image8(size.x, size.y, 3);
     }
 
     void read(const gl::Texture2D& band, int first_row) {
         std::visit([&](auto& picture) { read_into(picture, band, first_row); }, picture_);
     }
 
-    std::variant<Image8, ImageF> take() { return std::move(picture_); }
+    Pixels take() { return std::move(picture_); }
 
 private:
     template <class T>
     static void read_into(BasicImage<T>& picture, const gl::Texture2D& band, int first_row) {
         const glm::ivec2 size = band.size();
         BasicImage<T> rgba(size.x, size.y, 4);
-        band.read(GL_RGBA, std::is_same_v<T, float> ? GL_FLOAT : GL_UNSIGNED_BYTE, rgba.data.data());
+        band.read(GL_RGBA, kType<T>, rgba.data.data());
         const std::size_t count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
         const T* from = rgba.data.data();
         T* to = picture.at(0, first_row);
@@ -138,7 +78,10 @@ private:
         }
     }
 
-    std::variant<Image8, ImageF> picture_;
+    template <class T>
+    static constexpr GLenum kType = std::is_same_v<T, float> ? GL_FLOAT : sizeof(T) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE;
+
+    Pixels picture_;
 };
 
 // A picture of one pixel, as large as this.
@@ -168,6 +111,7 @@ struct Renderer::Impl {
           exact(options.shader_dir),
           delta(options.shader_dir),
           compose(options.shader_dir) {
+        if (options.tone_lut) compose.set_tone_lut(*options.tone_lut);
         const gl::ContextInfo& gl_info = context.info();
         info.kind = gl_info.software ? "cpu" : "gpu";
         info.platform = gl_info.platform;
@@ -190,7 +134,9 @@ struct Renderer::Impl {
     }
 
     RenderResult render(const Scene& scene, const std::string& not_exact = {});
-    std::variant<Image8, ImageF> constant_picture(const Plan& plan, const Scene& scene, bool linear, Recorder& record);
+    Pixels constant_picture(const Plan& plan, const Scene& scene, GLenum format, Recorder& record);
+    Image8 draw_view(const Plan& plan, const Scene& scene, const DistanceField& field, const ShapeLists& lists);
+    double exposure_of(const Plan& plan, const Scene& scene, const FrameLight& light, Recorder& record);
     gl::Texture2D render_hrc(const Plan& plan, const DistanceField& field, Recorder& record);
     void check_thread() const {
         if (std::this_thread::get_id() != thread)
@@ -255,8 +201,8 @@ gl::Texture2D Renderer::Impl::render_hrc(const Plan& plan, const DistanceField& 
 // ---- end of hrc
 
 // One pixel as the device composes it, for all.
-std::variant<Image8, ImageF> Renderer::Impl::constant_picture(const Plan& plan, const Scene& scene, bool linear, Recorder& record) {
-    gl::Texture2D pixel(linear ? GL_RGBA32F : GL_RGBA8, {1, 1});
+Pixels Renderer::Impl::constant_picture(const Plan& plan, const Scene& scene, GLenum format, Recorder& record) {
+    gl::Texture2D pixel(format, {1, 1});
     record.pass("compose", {1, 1}, [&] {
         const glm::vec4 mean(glm::vec3(*plan.constant), 1.0f);
         gl::Texture2D radiance(GL_RGBA32F, {1, 1});
@@ -264,24 +210,86 @@ std::variant<Image8, ImageF> Renderer::Impl::constant_picture(const Plan& plan, 
         Scene open;  // no shape shows
         open.canvas.floor_albedo = scene.canvas.floor_albedo;
         open.output = scene.output;
-        gl::Texture2D lights(GL_RGBA32F, {1, 1});
-        const float black[4] = {};
-        lights.fill(GL_RGBA, GL_FLOAT, black);
-        return compose.run(plan, open, linear, radiance, lights, DistancePass::empty_field(plan), settings, 0, pixel);
+        const gl::Texture2D lights = black_texel();
+        const DistanceField field = DistancePass::empty_field(plan);
+        const FrameLight light{radiance, lights, field};
+        compose.set_lit(black_texel());
+        if (format == GL_RGBA32F) return compose.linear(plan, open, light, settings, plan.shown.first, pixel);
+        LogAverage average;
+        const double shown = luminance(*plan.constant * scene.canvas.floor_albedo);
+        average.add_to_mean(shown);
+        average.add(shown);
+        return compose.display(plan, open, exposure_factor(scene.output, average.value()), light, settings, plan.shown.first, pixel);
     });
-    Reader reader({1, 1}, linear);
+    Reader reader({1, 1}, format);
     record.host("read", {1, 1}, [&] { reader.read(pixel, 0); });
-    std::variant<Image8, ImageF> result;
+    Pixels result;
     record.host("fill", plan.shown.size, [&] {
-        result = std::visit([&](const auto& one) -> std::variant<Image8, ImageF> { return filled(one, plan.shown.size); }, reader.take());
+        result = std::visit([&](const auto& one) -> Pixels { return filled(one, plan.shown.size); }, reader.take());
     });
     return result;
+}
+
+// The factor before the tone curve. Automatic exposure looks at every free pixel of the canvas, row by row: the same scene gives the
+// same factor whatever the bands, and whatever part of it is shown.
+double Renderer::Impl::exposure_of(const Plan& plan, const Scene& scene, const FrameLight& light, Recorder& record) {
+    if (!scene.output.auto_key) return exposure_factor(scene.output);
+    std::vector<float> luminances;  // of free pixels
+    for (int row = 0; row < plan.canvas.y; row += plan.band_rows) {
+        const int rows = std::min(plan.band_rows, plan.canvas.y - row);
+        gl::Texture2D band = settings.take(GL_RGBA32F, {plan.canvas.x, rows});
+        record.pass("exposure", {plan.canvas.x, rows}, [&] { return compose.linear(plan, scene, light, settings, {0, row}, band); });
+        record.host("exposure read", {plan.canvas.x, rows}, [&] {
+            ImageF rgba(plan.canvas.x, rows, 4);
+            band.read(GL_RGBA, GL_FLOAT, rgba.data.data());
+            for (std::size_t i = 0; i < rgba.data.size(); i += 4) {
+                const float* pixel = &rgba.data[i];
+                if (pixel[3] > 0) luminances.push_back(static_cast<float>(luminance({pixel[0], pixel[1], pixel[2]})));
+            }
+        });
+        settings.give(std::move(band));
+    }
+    LogAverage average;
+    for (const float y : luminances) average.add_to_mean(double(y));
+    for (const float y : luminances) average.add(double(y));
+    return exposure_factor(scene.output, average.value());
+}
+
+// A look into the frame instead of its light: drawn on the host, of the part that is shown.
+Image8 Renderer::Impl::draw_view(const Plan& plan, const Scene& scene, const DistanceField& field, const ShapeLists& lists) {
+    ViewField seen{plan.shown.size, {}};
+    const glm::ivec2 border = plan.grid.border + plan.shown.first;
+    const bool empty = plan.shape_slices.empty();
+    std::vector<float> grid;
+    if (!empty) {
+        grid.resize(static_cast<std::size_t>(plan.grid.size.x) * static_cast<std::size_t>(plan.grid.size.y));
+        field.distance.read(GL_RED, GL_FLOAT, grid.data());
+    }
+    for (int y = 0; y < seen.size.y; ++y)
+        for (int x = 0; x < seen.size.x; ++x) {
+            const glm::ivec2 at = glm::ivec2(x, y) + border;
+            const auto i = static_cast<std::size_t>(at.y) * static_cast<std::size_t>(plan.grid.size.x) + static_cast<std::size_t>(at.x);
+            seen.distance.push_back(empty ? static_cast<float>(plan.grid.diagonal_px) : grid[i]);
+        }
+    if (scene.render.view == "distance") return draw_distance(seen);
+    if (scene.render.view == "normals") return draw_normals(seen);
+    // Without lists every tile asks every shape.
+    const int side = glsl::kDistanceTile;
+    glm::ivec2 tiles = lists.tiles;
+    std::vector<int> counts(lists.tile_count(), 0);
+    for (std::size_t i = 0; i < lists.ranges.size(); ++i) counts[i % counts.size()] += lists.ranges[i].y - lists.ranges[i].x;
+    if (tiles.x == 0) {
+        tiles = (plan.grid.size + side - 1) / side;
+        counts.assign(static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y), static_cast<int>(scene.shapes.size()));
+    }
+    return draw_tiles(seen, counts, tiles, border, side);
 }
 
 // The frame, in the order in which it happens.
 RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_exact) {
     const Clock::time_point start = Clock::now();
     const bool linear = asked.output.format != "png";
+    const GLenum format = linear ? GL_RGBA32F : bit_depth_of("png", asked.output.bit_depth) == 16 ? GL_RGBA16 : GL_RGBA8;
     RenderResult result;
     RenderStats& stats = result.stats;
     const std::optional<Scene> lean = without_unseen_shapes(asked, stats.skipped);
@@ -295,7 +303,7 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     stats.skipped.insert(stats.skipped.end(), plan.skipped.begin(), plan.skipped.end());
     Recorder record(timer);
     if (plan.constant) {
-        result.picture = constant_picture(plan, scene, linear, record);
+        result.picture = constant_picture(plan, scene, format, record);
         context.check_reset();
         stats.passes = record.finish();
         stats.total_ms = ms_since(start);
@@ -316,6 +324,17 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         record.pass("distance", {plan.grid.size.x, plan.end_distance_row - plan.first_distance_row}, [&] { return distance.run(plan, lists, settings, field); });
     if (!plan.jump_steps.empty())
         record.pass("jump flood", plan.grid.size, [&] { return jump_flood.run(plan, settings, field); });
+
+    if (scene.render.view != "final") {
+        record.host("view", plan.shown.size, [&] { result.picture = draw_view(plan, scene, field, lists); });
+        context.check_reset();
+        settings.give(std::move(field.distance));
+        settings.give(std::move(field.material));
+        stats.passes = record.finish();
+        stats.gpu_bytes = plan.gpu_bytes + buffers.bytes();
+        stats.total_ms = ms_since(start);
+        return result;
+    }
 
     const bool marches = !plan.cascades.empty() || plan.hrc.active();
     if (marches) {
@@ -353,18 +372,24 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     if (plan.delta.used()) record.pass("lights", plan.lit.size, [&] { return delta.pixels(plan, field, settings, lights); });
     // Where there is no light one black texel stands for every pixel.
     for (gl::Texture2D* texture : {&radiance, &lights}) {
-        if (*texture) continue;
-        const float black[4] = {};
-        *texture = gl::Texture2D(GL_RGBA32F, {1, 1});
-        texture->fill(GL_RGBA, GL_FLOAT, black);
+        if (!*texture) *texture = black_texel();
     }
+    const FrameLight light{radiance, lights, field};
+    if (scene.output.solids == Solids::lit)
+        record.host("lit solids", plan.canvas, [&] { compose.set_lit(lit_solids(plan, scene, light)); });
+    else
+        compose.set_lit(black_texel());
+    const double exposure = linear ? 1.0 : exposure_of(plan, scene, light, record);
 
-    Reader reader(plan.shown.size, linear);
+    Reader reader(plan.shown.size, format);
     for (int row = 0; row < plan.shown.size.y; row += plan.band_rows) {
         const int rows = std::min(plan.band_rows, plan.shown.size.y - row);
-        gl::Texture2D band = settings.take(linear ? GL_RGBA32F : GL_RGBA8, {plan.shown.size.x, rows});
-        record.pass("compose", {plan.shown.size.x, rows},
-                    [&] { return compose.run(plan, scene, linear, radiance, lights, field, settings, row, band); });
+        gl::Texture2D band = settings.take(format, {plan.shown.size.x, rows});
+        const glm::ivec2 first = plan.shown.first + glm::ivec2(0, row);
+        record.pass("compose", {plan.shown.size.x, rows}, [&] {
+            return linear ? compose.linear(plan, scene, light, settings, first, band)
+                          : compose.display(plan, scene, exposure, light, settings, first, band);
+        });
         record.host("read", {plan.shown.size.x, rows}, [&] { reader.read(band, row); });
         settings.give(std::move(band));
     }

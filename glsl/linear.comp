@@ -1,5 +1,5 @@
 // Reads mean radiance, distance and material; writes the linear picture at pixel centres, never
-// antialiased. One thread is one pixel.
+// antialiased; alpha is 1 in free pixels and 0 in solid ones. One thread is one pixel.
 #version 430 core
 #include "compose.h"
 layout(std140, binding = kComposeParamsBinding) uniform Params { ComposeParams params; };
@@ -16,5 +16,5 @@ void main() {
     bool solid = params.has_shapes != 0 && pixel_distance(pixel) <= 0.0;
     vec3 radiance = solid ? solid_radiance(pixel) : floor_radiance(pixel);
     // A scene may hold negative zeros, the picture none.
-    imageStore(linear_image, texel, vec4(mix(radiance, vec3(0.0), equal(radiance, vec3(0.0))), 1.0));
+    imageStore(linear_image, texel, vec4(mix(radiance, vec3(0.0), equal(radiance, vec3(0.0))), solid ? 0.0 : 1.0));
 }

@@ -17,6 +17,7 @@ constexpr GLenum kScratchUnit = 95;
 std::size_t texel_bytes(GLenum format) {
     switch (format) {
         case GL_RGBA32F: return 16;
+        case GL_RGBA16:
         case GL_RGBA16F: return 8;
         case GL_RGBA8:
         case GL_R32F:
@@ -89,6 +90,13 @@ void Texture2D::read(GLenum format, GLenum type, void* out) const {
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glGetTexImage(GL_TEXTURE_2D, 0, format, type, out);
     check_errors("reading a texture back");
+}
+
+void Texture2D::write(GLenum format, GLenum type, const void* in) {
+    glBindTexture(GL_TEXTURE_2D, id_);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size_.x, size_.y, format, type, in);
+    check_errors("writing a texture");
 }
 
 void Texture2D::fill(GLenum format, GLenum type, const void* value) {

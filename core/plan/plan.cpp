@@ -13,6 +13,7 @@
 #include "core/plan/saving.h"
 #include "core/plan/skip.h"
 #include "core/plan/sky.h"
+#include "core/scene/words.h"
 #include "glsl/scene_records.h"
 
 namespace penumbra {
@@ -265,10 +266,12 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     plan.shown = {{region.x, region.y}, {region.w, region.h}};
     plan.lit.first = glm::max(plan.shown.first - 1, glm::ivec2(0));
     plan.lit.size = glm::min(plan.shown.end() + 1, plan.canvas) - plan.lit.first;
+    // What these show depends on more than what is shown: a part stays what it is of the whole.
+    if (scene.output.solids == Solids::lit || scene.output.auto_key || scene.render.view != "final") plan.lit = {{0, 0}, plan.canvas};
     const bool in_part = area(plan.lit.size) < area(plan.canvas);
     plan.end_distance_row = plan.grid.size.y;
     // What the picture depends on alone, so that its limits hold whatever is skipped.
-    const std::size_t row_bytes = static_cast<std::size_t>(plan.shown.size.x) * (scene.output.format == "png" ? 4 : 16);
+    const std::size_t row_bytes = static_cast<std::size_t>(plan.shown.size.x) * (scene.output.format != "png" ? 16 : bit_depth_of("png", scene.output.bit_depth) / 2);
     // Linear pictures of 8192 x 8192 would be a GiB at once, more than llvmpipe holds in a texture.
     plan.band_rows = static_cast<int>(std::clamp<std::size_t>(kBandBytes / row_bytes, 1, static_cast<std::size_t>(plan.shown.size.y)));
     check_size(plan.grid.size, 4, limits, "distance field");
@@ -279,7 +282,9 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     const auto leave_out = [&](std::string what, std::string why, double saved) {
         plan.skipped.push_back({std::move(what), std::move(why), saved});
     };
-    if (std::optional<ConstantLight> light = constant_light(scene)) {
+    // A view looks at what a constant picture has not, and dither differs from pixel to pixel.
+    const bool may_be_constant = scene.render.view == "final" && (scene.output.dither == Dither::none || scene.output.format != "png");
+    if (std::optional<ConstantLight> light = may_be_constant ? constant_light(scene) : std::nullopt) {
         if (plan.method == "auto") {
             plan.method = "exact";
             plan.method_reason = "every pixel is the same, whatever the method";

@@ -163,12 +163,12 @@ private:
     double depth_in(const Polygon& g, dvec2 p) const {
         bool odd = false;
         double nearest = 1e300;
-        for (std::size_t i = 0; i < g.points.size(); ++i) {
-            const dvec2 a = frame_.point(g.points[i]);
-            const dvec2 b = frame_.point(g.points[(i + 1) % g.points.size()]);
+        for_each_edge(g, [&](Point from, Point to) {
+            const dvec2 a = frame_.point(from);
+            const dvec2 b = frame_.point(to);
             nearest = std::min(nearest, segment(p, a, b));
             if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) * (b.x - a.x) / (b.y - a.y)) odd = !odd;
-        }
+        });
         return odd ? nearest : -nearest;
     }
     double depth_in(const Bitmap&, dvec2) const { return -1; }

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "core/scene/words.h"
+
 namespace penumbra {
 namespace {
 
@@ -61,8 +63,9 @@ public:
         put_all(points, width, closed);
     }
     void put(const Polygon& shape) {
-        const auto& [points] = shape;
-        put(points);
+        const auto& [points, ring_starts, key] = shape;
+        (void)key;  // how it was written is not what it is
+        put_all(points, ring_starts);
     }
     void put(const Bitmap& shape) {
         const auto& [image, position, size, emission, above, albedo] = shape;
@@ -119,9 +122,16 @@ public:
         const auto& [method, quality, bounces, converged, tolerance, skip, keep, view] = render;
         put_all(method, quality, bounces, converged, tolerance, skip, keep, view);
     }
+    void put(const Camera& camera) {
+        const auto& [aperture, shutter, iso] = camera;
+        put_all(aperture, shutter, iso);
+    }
     void put(const OutputSettings& output) {
-        const auto& [format, depth, antialias, solids, exposure, tonemap] = output;
-        put_all(format, depth, antialias, solids, exposure, tonemap);
+        const auto& [format, depth, antialias, solids, exposure, camera, key, tonemap, look, white, dither] = output;
+        // As for the canvas: what is left out is what says the default. A depth that the format has not is its own.
+        (void)depth;
+        put_all(format, bit_depth_of(format, output.bit_depth), antialias, solids, exposure, camera, key, tonemap, look.value_or("none"),
+                white.value_or(kDefaultWhite), dither);
     }
     void put(const Scene& scene) {
         const auto& [canvas, sky, shapes, lights, render, output] = scene;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -53,10 +54,27 @@ struct Polyline {
     bool closed = false;
 };
 
-// Filled by the even-odd rule.
+// What an outline was written as; problems name its key.
+enum class OutlineKey { points, d, text };
+
+// Filled by the even-odd rule. Its rings stand one behind the other in `points`: holes, and pieces that lie apart. Each ring but
+// the first begins at one of `ring_starts`, which grow; each is closed.
 struct Polygon {
-    std::vector<Point> points;
+    std::vector<Point> points{};
+    std::vector<std::size_t> ring_starts{};
+    OutlineKey key = OutlineKey::points;
 };
+
+// Calls edge(from, to) for every edge of every ring, in order.
+template <class Edge>
+void for_each_edge(const Polygon& polygon, Edge edge) {
+    std::size_t first = 0;
+    for (std::size_t ring = 0; ring <= polygon.ring_starts.size(); ++ring) {
+        const std::size_t end = ring < polygon.ring_starts.size() ? polygon.ring_starts[ring] : polygon.points.size();
+        for (std::size_t i = first; i < end; ++i) edge(polygon.points[i], polygon.points[i + 1 < end ? i + 1 : first]);
+        first = end;
+    }
+}
 
 // Decoded picture: RGBA, 8 bits, straight alpha, colours sRGB encoded, rows top to bottom.
 struct Texels {
@@ -142,6 +160,14 @@ struct Canvas {
 enum class Quality { draft, standard, high };
 enum class Skip { all, none };
 enum class Solids { emission, lit };
+enum class Dither { none, triangular };
+
+// A camera's settings, for an exposure (core/film/exposure.h).
+struct Camera {
+    double aperture = 1;  // f-number
+    double shutter_s = 1;
+    double iso = 100;
+};
 
 struct RenderSettings {
     std::string method = "auto";
@@ -154,13 +180,23 @@ struct RenderSettings {
     std::string view = "final";
 };
 
+// The radiance that Reinhard's extended curve maps to 1, unless the scene says another.
+constexpr double kDefaultWhite = 4;
+// What automatic exposure makes of the log-average: the reflectance of a photographer's grey card.
+constexpr double kDefaultKey = 0.18;
+
 struct OutputSettings {
     std::string format = "png";
-    int bit_depth = 8;
+    std::optional<int> bit_depth;  // else the format's own (core/scene/words.h)
     bool antialias = true;
     Solids solids = Solids::emission;
-    double exposure_ev = 0;
+    double exposure_ev = 0;           // with a camera, its compensation
+    std::optional<Camera> camera;
+    std::optional<double> auto_key;   // automatic exposure: what the log-average of the free pixels becomes
     std::string tonemap = "none";
+    std::optional<std::string> look;  // of "agx", else "none"
+    std::optional<double> white;      // of "reinhard_extended", else kDefaultWhite
+    Dither dither = Dither::none;
 };
 
 struct Scene {

@@ -203,17 +203,60 @@ void validate_render(RangeChecks& checks, const Path& where, const RenderSetting
                   known_views());
 }
 
+void validate_exposure(RangeChecks& checks, const Path& where, const OutputSettings& output) {
+    const Limits& limits = checks.limits();
+    if (output.auto_key) {
+        checks.between(where.key("key"), *output.auto_key, limits.min_key, limits.max_key);
+        return;
+    }
+    if (!output.camera) {
+        checks.between(where, output.exposure_ev, -limits.max_exposure_ev, limits.max_exposure_ev);
+        return;
+    }
+    checks.between(where.key("aperture"), output.camera->aperture, limits.min_aperture, limits.max_aperture);
+    checks.between(where.key("shutter"), output.camera->shutter_s, limits.min_shutter_s, limits.max_shutter_s);
+    checks.between(where.key("iso"), output.camera->iso, limits.min_iso, limits.max_iso);
+    checks.between(where.key("compensation"), output.exposure_ev, -limits.max_compensation_ev,
+                   limits.max_compensation_ev);
+}
+
+void validate_bit_depth(RangeChecks& checks, const Path& where, const OutputSettings& output) {
+    if (!output.bit_depth || !is_known_word(output.format, known_formats())) {
+        return;
+    }
+    const std::span<const int> depths = bit_depths_of(output.format);
+    if (depths.empty()) {
+        checks.add(where, "conflict", "must not stand with the format " + output.format + ", which has no choice of it");
+    } else if (std::find(depths.begin(), depths.end(), *output.bit_depth) == depths.end()) {
+        checks.add(where, "unknown_value",
+                   "must be " + std::to_string(depths[0]) + " or " + std::to_string(depths[1]) + " for " +
+                       output.format + ", is " + std::to_string(*output.bit_depth));
+    }
+}
+
 void validate_output(RangeChecks& checks, const Path& where, const OutputSettings& output) {
     validate_word(checks, where.key("format"), output.format,
                   is_known_word(output.format, known_formats()), known_formats());
-    if (output.bit_depth != 8 && output.bit_depth != 16) {
-        checks.add(where.key("bit_depth"), "unknown_value",
-                   "must be 8 or 16, is " + std::to_string(output.bit_depth));
-    }
-    const double most = checks.limits().max_exposure_ev;
-    checks.between(where.key("exposure"), output.exposure_ev, -most, most);
+    validate_bit_depth(checks, where.key("bit_depth"), output);
+    validate_exposure(checks, where.key("exposure"), output);
     validate_word(checks, where.key("tonemap"), output.tonemap,
                   is_known_word(output.tonemap, known_tonemaps()), known_tonemaps());
+    // What a curve has no use for is not passed over.
+    const auto only_for = [&](const char* key, const char* curve) {
+        if (output.tonemap != curve && is_known_word(output.tonemap, known_tonemaps())) {
+            checks.add(where.key(key), "conflict",
+                       "is for the tone map " + std::string(curve) + ", not for " + output.tonemap);
+        }
+    };
+    if (output.look) {
+        validate_word(checks, where.key("look"), *output.look, is_known_word(*output.look, known_looks()),
+                      known_looks());
+        only_for("look", "agx");
+    }
+    if (output.white) {
+        checks.between(where.key("white"), *output.white, checks.limits().min_white, checks.limits().max_white);
+        only_for("white", "reinhard_extended");
+    }
 }
 
 }  // namespace

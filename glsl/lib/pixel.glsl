@@ -1,10 +1,11 @@
 // What a pixel holds (docs/methods/light-transport.md): floor times mean radiance where free, the topmost
-// shape's emission where solid.
+// shape's emission where solid, with what it reflects for the eye.
 #include "lib/scene.glsl"
 
 layout(binding = kComposeRadianceUnit) uniform sampler2D radiance_texture;
 layout(binding = kComposeLightsUnit) uniform sampler2D lights_texture;
 layout(binding = kComposeDistanceUnit) uniform sampler2D distance_texture;
+layout(binding = kComposeLitUnit) uniform sampler2D lit_texture;
 layout(binding = kComposeMaterialUnit) uniform isampler2D material_texture;
 
 float pixel_distance(ivec2 pixel) { return texelFetch(distance_texture, pixel + params.border, 0).r; }
@@ -19,5 +20,6 @@ vec3 floor_radiance(ivec2 pixel) {
 
 vec3 solid_radiance(ivec2 pixel) {
     int shape = texelFetch(material_texture, pixel + params.border, 0).r;
-    return shape < 0 ? vec3(0.0) : shape_emission(shape, vec2(pixel) + 0.5) * params.radiance_scale;
+    vec3 lit = texelFetch(lit_texture, min(pixel, textureSize(lit_texture, 0) - 1), 0).rgb;
+    return shape < 0 ? vec3(0.0) : shape_emission(shape, vec2(pixel) + 0.5) * params.radiance_scale + lit;
 }

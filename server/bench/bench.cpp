@@ -102,7 +102,7 @@ std::string run_case(const BenchCase& c, const BenchSettings& settings, RenderBa
     overrides.push_back({"/render/quality", c.quality});
     overrides.push_back({"/output/format", "pfm"});
     const Scene scene = bench_scene(c.scene, text, overrides);
-    for (const Problem& problem : engine.unsupported(scene)) throw std::runtime_error(problem.pointer + ": " + problem.message);
+    for (const Problem& problem : engine.unsupported_with({})(scene)) throw std::runtime_error(problem.pointer + ": " + problem.message);
 
     for (int i = 0; i < settings.warm_up; ++i) backend.render(scene);
     std::vector<RenderStats> runs;

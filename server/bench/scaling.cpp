@@ -56,7 +56,7 @@ void measure_scaling(const ScalingSettings& settings, RenderBackend& backend, co
                 Scene scene = curve.scene(step);
                 scene.render.method = method;
                 scene.render.quality = settings.quality == "draft" ? Quality::draft : settings.quality == "high" ? Quality::high : Quality::standard;
-                if (!engine.unsupported(scene).empty()) continue;
+                if (!engine.unsupported_with({})(scene).empty()) continue;
                 std::vector<double> cpu;
                 RenderStats stats;
                 try {

@@ -88,7 +88,7 @@ std::string skip_rows(const std::string& path, const std::string& method, const 
                       const SkipTableSettings& settings, RenderBackend& backend, const Engine& engine) {
     const Scene lean = bench_scene(path, read_text(path, std::size_t(64) << 20),
                                    {{"/render/method", method}, {"/render/quality", quality}, {"/render/skip", "all"}});
-    for (const Problem& problem : engine.unsupported(lean)) throw std::runtime_error(problem.pointer + ": " + problem.message);
+    for (const Problem& problem : engine.unsupported_with({})(lean)) throw std::runtime_error(problem.pointer + ": " + problem.message);
     const std::string name = std::filesystem::path(path).stem().string();
     Scene full = lean;
     full.render.skip = Skip::none;

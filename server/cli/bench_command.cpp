@@ -56,7 +56,7 @@ void check_words(const std::string& option, const std::string& pointer, const st
         const ParsedScene parsed =
             parse_scene(R"({"version": 1, "canvas": {"width": 16, "height": 16}})", {}, {}, {{pointer, word}});
         if (!parsed.scene) throw InputError(option + ": " + parsed.problems.front().problem.message);
-        for (const Problem& problem : engine.unsupported(*parsed.scene)) throw InputError(option + ": " + problem.message);
+        for (const Problem& problem : engine.unsupported_with({})(*parsed.scene)) throw InputError(option + ": " + problem.message);
     }
 }
 
@@ -70,7 +70,7 @@ void put(const BenchOptions& options, const std::string& text) {
 
 int run_skip_table(const BenchOptions& options, const Engine& engine) {
     if (options.output != "-") std::ofstream(options.output, std::ios::trunc);
-    const auto backend = engine.make_backend({.device = options.devices.front(), .shader_dir = {}});
+    const auto backend = engine.make_backend({.device = options.devices.front(), .shader_dir = {}, .tone_lut = {}});
     put(options, skip_table_head());
     std::size_t failed = 0;
     for (const std::string& scene : options.scenes)
@@ -86,7 +86,7 @@ int run_skip_table(const BenchOptions& options, const Engine& engine) {
 
 int run_scaling(const BenchOptions& options, const Engine& engine) {
     if (options.output != "-") std::ofstream(options.output, std::ios::trunc);
-    const auto backend = engine.make_backend({.device = options.devices.front(), .shader_dir = {}});
+    const auto backend = engine.make_backend({.device = options.devices.front(), .shader_dir = {}, .tone_lut = {}});
     measure_scaling({options.methods, "standard", options.settings.repeats, options.settings.most_seconds}, *backend, engine,
                     [&](const std::string& row) {
                         put(options, row + "\n");
@@ -108,7 +108,7 @@ int run_bench(const BenchOptions& options, const Engine& engine) {
     std::size_t failed = 0;
     std::size_t kept = 0;
     for (const std::string& device : options.devices) {
-        const auto backend = engine.make_backend({.device = device, .shader_dir = {}});
+        const auto backend = engine.make_backend({.device = device, .shader_dir = {}, .tone_lut = {}});
         for (const std::string& scene : options.scenes)
             for (const int size : options.sizes)
                 for (const std::string& method : options.methods)

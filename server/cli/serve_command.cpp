@@ -44,14 +44,15 @@ void exit_at_next_signal(const sigset_t& set) {
 }
 
 int serve(const Config& config, const Engine& engine) {
+    const std::shared_ptr<const ToneLut> tone_lut = read_tone_lut(config.tone_lut);
     // Blocked before any thread exists, so that no thread but this one is interrupted.
     const sigset_t signals = ending_signals();
     ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
     const Log log(config.log_format);
-    RenderWorker worker([&] { return engine.make_backend({.device = config.device, .shader_dir = {}}); },
+    RenderWorker worker([&] { return engine.make_backend({.device = config.device, .shader_dir = {}, .tone_lut = tone_lut}); },
                         config.queue_capacity, log, warm_up_scenes(config.warm_up));
-    RenderService service(worker, engine.unsupported, config);
+    RenderService service(worker, engine.unsupported_with({.tone_lut = tone_lut != nullptr}), config);
     HttpServer server(service, config, log);
     if (const std::string why = server.start(); !why.empty()) {
         complain(why);
@@ -93,7 +94,14 @@ void add_serve_command(CLI::App& app, CommandContext& context) {
     auto config = std::make_shared<Config>();
     add_config_options(*command, *config);
     command->callback([&context, config] {
-        context.run = [&context, config] { return serve(*config, context.engine); };
+        context.run = [&context, config]() -> int {
+            try {
+                return serve(*config, context.engine);
+            } catch (const InputError& error) {
+                complain(error.what());
+                return kBadInput;
+            }
+        };
     });
 }
 

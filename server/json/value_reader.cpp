@@ -45,6 +45,12 @@ constexpr OtherName kOtherNames[] = {
     {"vertices", "points"},
     {"thickness", "width"},
     {"stroke", "width"},
+    {"path", "d"},
+    {"data", "d"},
+    {"content", "text"},
+    {"font_size", "size"},
+    {"text_anchor", "anchor"},
+    {"fill-rule", "fill_rule"},
     {"r", "radius"},
     {"size", "radius"},
     {"start", "from"},
@@ -53,6 +59,11 @@ constexpr OtherName kOtherNames[] = {
     {"url", "image"},
     {"threshold", "solid_above"},
     {"ev", "exposure"},
+    {"f", "aperture"},
+    {"f_number", "aperture"},
+    {"shutter_speed", "shutter"},
+    {"ev", "compensation"},
+    {"white_point", "white"},
     {"samples", "quality"},
 };
 
@@ -66,6 +77,7 @@ constexpr Home kHomes[] = {
     {"radiance", "sky"},     {"gradient", "sky"},  {"method", "render"},   {"quality", "render"},
     {"bounces", "render"},   {"skip", "render"},   {"format", "output"},   {"bit_depth", "output"},
     {"antialias", "output"}, {"solids", "output"}, {"exposure", "output"}, {"tonemap", "output"},
+    {"look", "output"},      {"white", "output"},  {"dither", "output"},
 };
 
 std::string_view other_name(std::string_view key, std::span<const std::string_view> known) {

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <fstream>
+#include <iterator>
 
 #include "core/scene/normal_form.h"
+#include "core/scene/words.h"
 #include "server/service/digest.h"
 #include "server/service/identity.h"
 
@@ -34,15 +37,22 @@ private:
     std::counting_semaphore<>& slots_;
 };
 
-SharedAnswer make_answer(RenderResult&& result, std::string format) {
+SharedAnswer make_answer(RenderResult&& result, const OutputSettings& output) {
     auto answer = std::make_shared<Answer>();
     const Clock::time_point start = Clock::now();
-    answer->picture = encode_picture(result);
+    answer->picture = encode_picture(result, output.format, bit_depth_of(output.format, output.bit_depth));
     answer->picture.shrink_to_fit();  // it may be kept for long
-    answer->format = std::move(format);
+    answer->format = output.format;
     answer->encode_ms = ms_since(start);
     answer->stats = std::move(result.stats);
     return answer;
+}
+
+// Pictures with the tone map "tony" follow from its table as well. Empty without one.
+std::string digest_of_file(const std::string& path) {
+    if (path.empty()) return "";
+    std::ifstream file(path, std::ios::binary);
+    return sha256({std::string{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}});
 }
 
 // The key of texts that are worth remembering: a few hundred bytes each.
@@ -63,13 +73,14 @@ SceneLimits limits_of(const Config& config) {
     limits.scene.max_canvas_pixels = std::min(limits.scene.max_canvas_pixels, config.max_pixels);
     limits.text.max_bytes = config.max_body_bytes;
     limits.text.max_string_bytes = std::min(limits.text.max_string_bytes, config.max_body_bytes);
+    limits.fonts = std::make_shared<const FontSource>(config.font);
     return limits;
 }
 
 CheckedScene check_scene(const RenderRequest& request, const SceneLimits& limits,
                          const UnsupportedFeatures& unsupported) {
     CheckedScene checked;
-    ParsedScene parsed = parse_scene(request.text, limits.scene, limits.text, request.overrides);
+    ParsedScene parsed = parse_scene(request.text, limits.scene, limits.text, request.overrides, *limits.fonts);
     if (!parsed.scene) {
         checked.failure = parsed.is_json ? RenderFailure::invalid_scene : RenderFailure::not_json;
         checked.problems = std::move(parsed.problems);
@@ -98,14 +109,13 @@ RenderResponse render_to_bytes(const RenderRequest& request, const SceneLimits& 
     if (checked.failure != RenderFailure::none) return refused(std::move(checked));
     RenderResponse response;
     response.parse_ms = ms_since(start);
-    const std::string format = checked.scene->output.format;
-    response.answer = make_answer(render(*checked.scene), format);
+    response.answer = make_answer(render(*checked.scene), checked.scene->output);
     return response;
 }
 
 // One render that one or more requests wait for. The first of them that sees it done encodes it for all.
 struct RenderService::Flight {
-    std::string format;
+    OutputSettings output;
     std::mutex mutex;
     std::condition_variable changed;
     std::optional<RenderOutcome> outcome;
@@ -125,7 +135,8 @@ RenderService::RenderService(RenderWorker& worker, UnsupportedFeatures unsupport
       limits_(limits_of(config)),
       parse_slots_(std::ptrdiff_t(std::max<std::size_t>(config.parse_slots, 1))),
       keys_(kKnownTexts),
-      cache_(config.cache_bytes) {}
+      cache_(config.cache_bytes),
+      table_id_(digest_of_file(config.tone_lut)) {}
 
 RenderService::~RenderService() = default;
 
@@ -135,7 +146,7 @@ RenderService::CacheFigures RenderService::cache_figures() const {
 
 std::string RenderService::tag_of(const std::string& key) const {
     const std::string device = device_class(worker_.status().device);
-    return device.empty() ? "" : sha256({key, build_id(), device});
+    return device.empty() ? "" : sha256({key, build_id(), device, table_id_});
 }
 
 CheckedScene RenderService::check(const RenderRequest& request, const std::string& text_key, std::string& key) {
@@ -209,7 +220,7 @@ void RenderService::render_shared(const std::string& key, std::shared_ptr<const 
                 return;
             }
             flight = std::make_shared<Flight>();
-            flight->format = scene->output.format;
+            flight->output = scene->output;
             const auto refusal = worker_.submit(std::move(scene), [flight](RenderOutcome outcome) {
                 {
                     const std::lock_guard inner(flight->mutex);
@@ -236,7 +247,7 @@ void RenderService::render_shared(const std::string& key, std::shared_ptr<const 
         std::string error = std::move(outcome.error);
         try {
             if (outcome.result) {
-                answer = make_answer(std::move(*outcome.result), flight->format);
+                answer = make_answer(std::move(*outcome.result), flight->output);
                 // Only now is it certain which device it was.
                 if (const std::string tag = tag_of(key); !tag.empty()) stored = cache_.put(tag, answer);
             }

@@ -72,6 +72,7 @@ using SceneRenderer = std::function<RenderResult(const Scene&)>;
 struct SceneLimits {
     Limits scene;
     TextLimits text;
+    std::shared_ptr<const FontSource> fonts = std::make_shared<const FontSource>();
 };
 SceneLimits limits_of(const Config& config);
 
@@ -126,6 +127,7 @@ private:
     std::counting_semaphore<> parse_slots_;
     TextMemo keys_;  // of right scenes, by their text
     AnswerCache cache_;
+    std::string table_id_;  // of the tone map "tony"
     std::mutex flights_mutex_;
     std::unordered_map<std::string, std::shared_ptr<Flight>> flights_;  // by the scene's key
     std::atomic<std::uint64_t> hits_{0}, misses_{0}, shared_{0}, not_modified_{0};

@@ -82,6 +82,8 @@ TEST(Distance, EveryTypeAsInDoublePrecision) {
         {"closed polyline", Polyline{{{3.1, 4.2}, {30.7, 6.9}, {12.2, 25.3}}, 2.2, true}},
         {"polygon", Polygon{{{3.1, 4.2}, {30.7, 6.9}, {20.2, 12.1}, {12.2, 25.3}}}},
         {"polygon that crosses itself", pentagram()},
+        {"polygon with a hole and a piece apart",
+         Polygon{{{3.1, 4.2}, {24.7, 3.9}, {22.2, 25.1}, {4.2, 24.3}, {8.1, 9.2}, {17.3, 8.8}, {15.2, 18.3}, {27.1, 20.2}, {34.2, 21.7}, {29.3, 27.1}}, {4, 7}}},
         {"outside the view", Circle{{-40, 70}, 9}},
     };
     // Numbers stay below 100, where a float's steps are 4e-6; a few operations each.

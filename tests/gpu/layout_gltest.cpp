@@ -90,7 +90,7 @@ Offsets delta_fields() {
 Offsets compose_fields() {
     return {FIELD(ComposeParams, origin),       FIELD(ComposeParams, extent),
             FIELD(ComposeParams, border),       FIELD(ComposeParams, antialias),
-            FIELD(ComposeParams, tonemap),      FIELD(ComposeParams, floor_albedo),
+            FIELD(ComposeParams, levels),      FIELD(ComposeParams, floor_albedo),
             FIELD(ComposeParams, exposure),     FIELD(ComposeParams, radiance_scale),
             FIELD(ComposeParams, white),        FIELD(ComposeParams, has_shapes),
             FIELD(ComposeParams, first_pixel),  FIELD(ComposeParams, first_lit)};
