@@ -12,6 +12,7 @@
 #include "core/gl/context.h"
 #include "core/gl/loop_limit.h"
 #include "core/gl/storage_buffer.h"
+#include "core/gl/settle.h"
 #include "core/gl/timer.h"
 #include "core/passes/cascade_pass.h"
 #include "core/passes/compose_pass.h"
@@ -99,6 +100,7 @@ BasicImage<T> filled(const BasicImage<T>& pixel, glm::ivec2 size) {
 struct Renderer::Impl {
     explicit Impl(const RendererOptions& options)
         : context(options.device),
+          samplers(options.shader_dir),
           distance(options.shader_dir),
           jump_flood(options.shader_dir),
           cascade(options.shader_dir),
@@ -143,6 +145,7 @@ struct Renderer::Impl {
 
     std::thread::id thread = std::this_thread::get_id();
     gl::Context context;
+    gl::SamplerSettler samplers;
     gl::PassTimer timer;
     gl::StorageBuffer lost_rays{GL_R32UI, sizeof(std::uint32_t)};
     gl::TexturePool textures{kPoolBytes};
@@ -307,6 +310,7 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         return result;
     }
     const PackedScene packed = pack_scene(scene, plan.radiance_scale);
+    samplers.settle();
     const SceneBuffers buffers(packed, scene.sky, plan);
     buffers.bind();
 

@@ -75,9 +75,10 @@ const uint kExactTooLong = 0x7fffffffu;  // a list has more entries than its hea
 // A material's texels: emission, first element | half the albedo, elements as above.
 const int kExactElementTexels = 3;
 const int kExactNodeRow = 1024;       // nodes in a row of the images that they are solved in
-const int kExactMaterialsUnit = 16;
-const int kExactNodeValuesUnit = 17;  // RGBA32F: irradiance by element
-const int kExactNodeLightsUnit = 18;  // RGBA32F: irradiance that lights without a size give, by element
+// Units of the reflection, which needs no lists.
+const int kExactMaterialsUnit = 5;
+const int kExactNodeValuesUnit = 6;   // RGBA32F: irradiance by element
+const int kExactNodeLightsUnit = 7;  // RGBA32F: irradiance that lights without a size give, by element
 const int kExactElementsStorage = 0;
 const int kExactChangeStorage = 1;    // uints: most that an element changed by, most that one shines with, as bits of floats
 

@@ -2,6 +2,7 @@
 #include "core/gl/handles.h"
 
 #include <algorithm>
+#include <bit>
 #include <string>
 #include <vector>
 
@@ -124,13 +125,20 @@ void Texture2D::clear(GLuint value) {
     check_errors("clearing a texture");
 }
 
+std::size_t buffer_texture_bytes(std::size_t bytes) {
+    std::size_t padded = std::max<std::size_t>((bytes + 15) / 16 * 16, 272);
+    if ((padded & 0xff00) == 0) padded += 256;
+    return std::has_single_bit(padded) ? padded + 16 : padded;
+}
+
 BufferTexture::BufferTexture(GLenum internal_format, const void* data, std::size_t bytes) : bytes_(bytes) {
-    // A buffer texture of no bytes is not complete: keep one texel.
-    static constexpr unsigned char kNothing[16] = {};
     glGenBuffers(1, &buffer_);
     glBindBuffer(GL_TEXTURE_BUFFER, buffer_);
-    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max<std::size_t>(bytes, 16)),
-                 bytes == 0 ? kNothing : data, GL_STATIC_DRAW);
+    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(buffer_texture_bytes(bytes)), nullptr, GL_STATIC_DRAW);
+    // What is shorter than a texel is filled up: the driver would read on behind it.
+    static constexpr unsigned char kNothing[16] = {};
+    if (bytes < sizeof(kNothing)) glBufferSubData(GL_TEXTURE_BUFFER, 0, sizeof(kNothing), kNothing);
+    if (bytes > 0) glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
     glGenTextures(1, &id_);
     // Not on a unit whose buffer texture a pass is about to read.
     glActiveTexture(GL_TEXTURE0 + kScratchUnit);

@@ -66,6 +66,11 @@ private:
     Filter filter_ = Filter::nearest;
 };
 
+// How long the buffer of a buffer texture is made, so that it holds `bytes`. llvmpipe compiles a program anew when a texture changes
+// from a power of two to none, also by the bytes of a buffer, or when bits 8 to 15 of these change from none to some (it takes
+// them for a number of levels). Lengths made here are alike in both.
+std::size_t buffer_texture_bytes(std::size_t bytes);
+
 // Immutable contents seen by shaders through a buffer texture: what scene data is read through, since
 // storage buffers are 13 to 17 times slower in a loop on Mesa 22 (docs/operations.md).
 class BufferTexture : public Handle {

@@ -12,7 +12,7 @@ namespace penumbra::gl {
 StorageBuffer::StorageBuffer(GLenum texel_format, std::size_t bytes) : bytes_(std::max<std::size_t>(bytes, 16)) {
     glGenBuffers(1, &buffer_);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer_);
-    glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes_), nullptr, GL_DYNAMIC_COPY);
+    glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(buffer_texture_bytes(bytes_)), nullptr, GL_DYNAMIC_COPY);
     glGenTextures(1, &id_);
     glBindTexture(GL_TEXTURE_BUFFER, id_);
     glTexBuffer(GL_TEXTURE_BUFFER, texel_format, buffer_);

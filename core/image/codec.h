@@ -16,8 +16,8 @@ namespace penumbra {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// PNG with 1 (grey), 3 (RGB) or 4 (RGBA) channels, 8 bits, with an sRGB chunk. Filter SUB,
-// libdeflate level 1: measured 7 times faster than stb_image_write and smaller (docs/decisions).
+// PNG of 1 (grey), 3 (RGB) or 4 (RGBA) channels, 8 bits, with an sRGB chunk, in the smallest form that loses nothing: grey where
+// all pixels are, RGB where all are opaque, a palette of up to 256 colours, 1 to 4 bits where they do (docs/decisions/0045).
 Bytes encode_png(const Image8& image);
 // The same with 16 bits a channel.
 Bytes encode_png(const Image16& image);

@@ -60,7 +60,8 @@ void measure_scaling(const ScalingSettings& settings, RenderBackend& backend, co
                 std::vector<double> cpu;
                 RenderStats stats;
                 try {
-                    backend.render(scene);
+                    // The first renders of a process and of a kind of scene compile.
+                    for (int i = 0; i < (step == curve.steps.front() ? 3 : 1); ++i) backend.render(scene);
                     for (int i = 0; i < settings.repeats; ++i) {
                         const double start = process_cpu_ms();
                         stats = backend.render(scene).stats;

@@ -66,6 +66,19 @@ void add_config_options(CLI::App& command, Config& config) {
     option("--connections", config.spare_http_threads, "PENUMBRA_CONNECTIONS",
            "Connections served beside those that wait for a render")
         ->check(whole_number(2, 1000));
+    option("--cache-bytes", config.cache_bytes, "PENUMBRA_CACHE_BYTES", "Bytes of pictures kept to be given again; 0 keeps none")
+        ->check(whole_number(0, 1L << 46));
+    command
+        .add_option_function<std::string>(
+            "--warm-up",
+            [&config](const std::string& word) {
+                config.warm_up = same_letters(word, "none") ? WarmUp::none
+                                 : same_letters(word, "all") ? WarmUp::all
+                                                             : WarmUp::common;
+            },
+            "Programs compiled before it is ready: none, common or all [common]")
+        ->envname("PENUMBRA_WARM_UP")
+        ->check(one_of({"none", "common", "all"}));
     command
         .add_option_function<std::string>(
             "--log",

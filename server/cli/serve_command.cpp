@@ -51,7 +51,7 @@ int serve(const Config& config, const Engine& engine) {
 
     const Log log(config.log_format);
     RenderWorker worker([&] { return engine.make_backend({.device = config.device, .shader_dir = {}, .tone_lut = tone_lut}); },
-                        config.queue_capacity, log);
+                        config.queue_capacity, log, warm_up_scenes(config.warm_up));
     RenderService service(worker, engine.unsupported_with({.tone_lut = tone_lut != nullptr}), config);
     HttpServer server(service, config, log);
     if (const std::string why = server.start(); !why.empty()) {

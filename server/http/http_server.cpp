@@ -28,6 +28,7 @@ using httplib::Request;
 using httplib::Response;
 
 constexpr int kOk = 200;
+constexpr int kNotModified = 304;
 constexpr const char* kRenderPath = "/v1/render";
 
 constexpr const char* kHint =
@@ -95,11 +96,11 @@ std::string why_not_bound(const std::string& host, int error) {
 }  // namespace
 
 struct HttpServer::Impl {
-    using Answer = void (Impl::*)(const Request&, Response&);
+    using Handler = void (Impl::*)(const Request&, Response&);
     struct Endpoint {
         const char* path;
         const char* allow;
-        Answer get;  // null: not for GET
+        Handler get;  // null: not for GET
     };
     static const std::array<Endpoint, 5> kEndpoints;
 
@@ -186,6 +187,8 @@ struct HttpServer::Impl {
     // counts, and says how long a connection is kept that is closed.
     void mend_headers(Response& response) const {
         response.headers.erase("Accept-Ranges");
+        // What it would say is the length of the picture (RFC 9110, 8.6).
+        if (response.status == kNotModified) response.headers.erase("Content-Length");
         if (response.headers.erase("Keep-Alive") > 0 && response.get_header_value("Connection") != "close") {
             response.set_header("Keep-Alive", "timeout=" + std::to_string(config.keep_alive_s));
         }
@@ -282,8 +285,16 @@ struct HttpServer::Impl {
                                              {"waiting", status.waiting},
                                              {"capacity", status.capacity},
                                              {"rendered", status.rendered},
-                                             {"render_ms", status.render_ms}};
+                                             {"render_ms", status.render_ms},
+                                             {"cache", cache_json(service.cache_figures())}};
         send(response, json.dump(2) + "\n", "application/json");
+    }
+
+    static nlohmann::ordered_json cache_json(const RenderService::CacheFigures& figures) {
+        return {{"pictures", figures.kept.entries},        {"bytes", figures.kept.bytes},
+                {"capacity_bytes", figures.kept.capacity_bytes}, {"evicted", figures.kept.evicted},
+                {"hits", figures.hits},                    {"misses", figures.misses},
+                {"shared", figures.shared},                {"not_modified", figures.not_modified}};
     }
 
     void info(const Request&, Response& response) {
@@ -364,10 +375,22 @@ struct HttpServer::Impl {
         RenderRequest wanted;
         wanted.text = body;
         wanted.formats = wishes;
-        send_picture(response, service.render(wanted));
+        wanted.anew = has_directive(joined(header_values(request, "Cache-Control")), "no-cache");
+        const EntityTags tags = parse_entity_tags(joined(header_values(request, "If-None-Match")));
+        if (!tags.empty()) wanted.client_has = [&](const std::string& tag) { return tags.has(tag); };
+        send_picture(response, service.render(wanted), wanted.anew);
     }
 
-    void send_picture(Response& response, RenderResponse&& rendered) {
+    // RFC 9211.
+    static std::string cache_status(const RenderResponse& rendered, bool anew) {
+        if (rendered.not_modified || rendered.source == Source::cache) return "penumbra; hit";
+        std::string status = anew ? "penumbra; fwd=request" : "penumbra; fwd=miss";
+        if (rendered.stored) status += "; stored";
+        if (rendered.source == Source::shared) status += "; collapsed";
+        return status;
+    }
+
+    void send_picture(Response& response, const RenderResponse& rendered, bool anew) {
         if (!rendered.error.empty()) {
             log.error("A render failed", {{"error", rendered.error}, {"id", exchange_id()}});
         }
@@ -376,16 +399,23 @@ struct HttpServer::Impl {
             return;
         }
         finish(response);
-        response.status = kOk;
-        std::string timing = timing_entry("queue", rendered.queue_ms) + ", " +
-                             timing_entry("parse", rendered.parse_ms);
-        for (const PassStats& pass : rendered.stats.passes) timing += ", " + timing_entry(pass.name, pass.wall_ms);
-        timing += ", " + timing_entry("encode", rendered.encode_ms);
-        timing += ", " + timing_entry("total", ms_since(GuardedServer::exchange().start));
-        response.set_header("Server-Timing", timing);
+        response.status = rendered.not_modified ? kNotModified : kOk;
         response.set_header("Vary", "Accept");
-        const PictureFormat* format = find_format(rendered.format);
-        response.set_content(reinterpret_cast<const char*>(rendered.picture.data()), rendered.picture.size(),
+        response.set_header("Cache-Control", "no-cache");  // to be kept, and asked after by its tag
+        response.set_header("Cache-Status", cache_status(rendered, anew));
+        if (!rendered.tag.empty()) response.set_header("ETag", '"' + rendered.tag + '"');
+        if (rendered.not_modified) return;
+        const Answer& answer = *rendered.answer;
+        std::string timing;
+        if (rendered.source != Source::cache) {
+            timing = timing_entry("queue", rendered.queue_ms) + ", " + timing_entry("parse", rendered.parse_ms) + ", ";
+            for (const PassStats& pass : answer.stats.passes) timing += timing_entry(pass.name, pass.wall_ms) + ", ";
+            timing += timing_entry("render", answer.stats.total_ms) + ", " + timing_entry("encode", answer.encode_ms) + ", ";
+        }
+        timing += timing_entry("total", ms_since(GuardedServer::exchange().start));
+        response.set_header("Server-Timing", timing);
+        const PictureFormat* format = find_format(answer.format);
+        response.set_content(reinterpret_cast<const char*>(answer.picture.data()), answer.picture.size(),
                              std::string(format ? format->media_type : "application/octet-stream"));
     }
 

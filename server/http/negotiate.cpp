@@ -109,6 +109,38 @@ std::string refuse_content_type(std::string_view content_type) {
     return "";
 }
 
+bool EntityTags::has(std::string_view tag) const {
+    return any || std::find(tags.begin(), tags.end(), tag) != tags.end();
+}
+
+EntityTags parse_entity_tags(std::string_view list) {
+    EntityTags result;
+    if (lower_trimmed(list) == "*") {
+        result.any = true;
+        return result;
+    }
+    // A tag may hold commas: the quotes divide.
+    while (true) {
+        const std::size_t start = list.find_first_not_of(" \t,");
+        if (start == std::string_view::npos) return result;
+        list.remove_prefix(start);
+        if (list.starts_with("W/")) list.remove_prefix(2);
+        const std::size_t end = list.starts_with('"') ? list.find('"', 1) : std::string_view::npos;
+        if (end == std::string_view::npos) return {};
+        result.tags.emplace_back(list.substr(1, end - 1));
+        list.remove_prefix(end + 1);
+        const std::size_t next = list.find_first_not_of(" \t");
+        if (next != std::string_view::npos && list[next] != ',') return {};
+    }
+}
+
+bool has_directive(std::string_view list, std::string_view name) {
+    for (const std::string& part : split(list, ',')) {
+        if (part.substr(0, part.find('=')) == name) return true;
+    }
+    return false;
+}
+
 bool is_request_id(std::string_view id) {
     return !id.empty() && id.size() <= 64 && std::all_of(id.begin(), id.end(), is_token_char);
 }

@@ -17,6 +17,20 @@ FormatWishes parse_accept(std::string_view accept);
 // Why a body with this Content-Type is refused: a sentence; empty when it is JSON in UTF-8.
 std::string refuse_content_type(std::string_view content_type);
 
+// If-None-Match (RFC 9110, 13.1.2): the tags of what the client has.
+struct EntityTags {
+    bool any = false;               // "*": whatever there is
+    std::vector<std::string> tags;  // without quotes and W/: the comparison is weak
+
+    bool empty() const { return !any && tags.empty(); }
+    bool has(std::string_view tag) const;
+};
+// What does not follow the grammar names nothing.
+EntityTags parse_entity_tags(std::string_view list);
+
+// Whether a header of comma-separated directives (Cache-Control) has this one, in any case.
+bool has_directive(std::string_view list, std::string_view name);
+
 // Whether a client's request id may be used as it is: ^[A-Za-z0-9._-]{1,64}$.
 bool is_request_id(std::string_view id);
 std::string new_request_id();

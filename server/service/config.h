@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <string>
 
+#include "server/service/warm_up.h"
+
 namespace penumbra {
 
 enum class LogFormat { text, json };
@@ -45,6 +47,12 @@ struct Config {
     int response_timeout_s = 60;
     // Longer than the idle time of common load balancers (60 s), so that they close first.
     int keep_alive_s = 75;
+
+    // Pictures kept to be given again; 0 keeps none. A 512 x 512 PNG has 0.1 to 0.5 MB: some thousand of them.
+    std::size_t cache_bytes = 256u << 20;
+
+    // Before the first request. `common` takes about a second with Mesa's shader cache, several without.
+    WarmUp warm_up = WarmUp::common;
 
     LogFormat log_format = LogFormat::text;
 };

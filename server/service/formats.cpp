@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdio>
 
 namespace penumbra {
 namespace {
@@ -86,6 +87,18 @@ FormatWishes only_format(std::string_view name) {
     wishes.wishes.push_back({std::string(name), 1});
     wishes.any_q = 0;
     return wishes;
+}
+
+std::string to_string(const FormatWishes& wishes) {
+    std::string text;
+    const auto add = [&](std::string_view name, double q) {
+        char number[32];
+        std::snprintf(number, sizeof number, ";q=%.3f", q);
+        text += (text.empty() ? "" : ", ") + std::string(name) + number;
+    };
+    for (const FormatWishes::Wish& wish : wishes.wishes) add(wish.format, wish.q);
+    add("*", wishes.any_q);
+    return text;
 }
 
 Bytes encode_linear(const ImageF& image, std::string_view format, int bit_depth) {

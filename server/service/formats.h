@@ -40,6 +40,9 @@ struct FormatWishes {
 FormatWishes any_format();
 FormatWishes only_format(std::string_view name);
 
+// One that differs tells other wishes apart: "png;q=1.000, pfm;q=0.500, *;q=1.000".
+std::string to_string(const FormatWishes& wishes);
+
 // The renderer gives pixels for display or linear ones as the scene's output.format asks; `bit_depth` tells an EXR's halves.
 Bytes encode_picture(const RenderResult& result, std::string_view format, int bit_depth);
 Bytes encode_linear(const ImageF& image, std::string_view format, int bit_depth = 0);

@@ -3,8 +3,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
+#include <fstream>
+#include <iterator>
 
+#include "core/scene/normal_form.h"
 #include "core/scene/words.h"
+#include "server/service/digest.h"
+#include "server/service/identity.h"
 
 namespace penumbra {
 namespace {
@@ -31,32 +37,32 @@ private:
     std::counting_semaphore<>& slots_;
 };
 
-// The second half of render_to_bytes(): the server parses under a slot and must not render under it.
-RenderResponse render_checked(CheckedScene&& checked, double parse_ms, const SceneRenderer& render) {
-    RenderResponse response;
-    response.parse_ms = parse_ms;
-    if (checked.failure != RenderFailure::none) {
-        response.failure = checked.failure;
-        response.problems = std::move(checked.problems);
-        response.problems_left_out = checked.problems_left_out;
-        return response;
-    }
-    response.format = checked.scene->output.format;
-    const int bit_depth = bit_depth_of(response.format, checked.scene->output.bit_depth);
-    RenderedScene rendered = render(std::move(*checked.scene));
-    response.failure = rendered.failure;
-    response.error = std::move(rendered.outcome.error);
-    response.queue_ms = rendered.outcome.wait_ms;
-    if (response.failure != RenderFailure::none) return response;
-    if (!rendered.outcome.result) {
-        response.failure =
-            rendered.outcome.not_ready ? RenderFailure::not_ready : RenderFailure::failed;
-        return response;
-    }
+SharedAnswer make_answer(RenderResult&& result, const OutputSettings& output) {
+    auto answer = std::make_shared<Answer>();
     const Clock::time_point start = Clock::now();
-    response.picture = encode_picture(*rendered.outcome.result, response.format, bit_depth);
-    response.encode_ms = ms_since(start);
-    response.stats = std::move(rendered.outcome.result->stats);
+    answer->picture = encode_picture(result, output.format, bit_depth_of(output.format, output.bit_depth));
+    answer->picture.shrink_to_fit();  // it may be kept for long
+    answer->format = output.format;
+    answer->encode_ms = ms_since(start);
+    answer->stats = std::move(result.stats);
+    return answer;
+}
+
+// Pictures with the tone map "tony" follow from its table as well. Empty without one.
+std::string digest_of_file(const std::string& path) {
+    if (path.empty()) return "";
+    std::ifstream file(path, std::ios::binary);
+    return sha256({std::string{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}});
+}
+
+// The key of texts that are worth remembering: a few hundred bytes each.
+constexpr std::size_t kKnownTexts = 4096;
+
+RenderResponse refused(CheckedScene&& checked) {
+    RenderResponse response;
+    response.failure = checked.failure;
+    response.problems = std::move(checked.problems);
+    response.problems_left_out = checked.problems_left_out;
     return response;
 }
 
@@ -100,40 +106,163 @@ RenderResponse render_to_bytes(const RenderRequest& request, const SceneLimits& 
                                const UnsupportedFeatures& unsupported, const SceneRenderer& render) {
     const Clock::time_point start = Clock::now();
     CheckedScene checked = check_scene(request, limits, unsupported);
-    return render_checked(std::move(checked), ms_since(start), render);
+    if (checked.failure != RenderFailure::none) return refused(std::move(checked));
+    RenderResponse response;
+    response.parse_ms = ms_since(start);
+    response.answer = make_answer(render(*checked.scene), checked.scene->output);
+    return response;
 }
+
+// One render that one or more requests wait for. The first of them that sees it done encodes it for all.
+struct RenderService::Flight {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::optional<RenderOutcome> outcome;
+    bool encoding = false;
+    bool done = false;
+    // When done:
+    RenderFailure failure = RenderFailure::none;
+    std::string error;
+    SharedAnswer answer;
+    double queue_ms = 0;
+    bool stored = false;
+};
 
 RenderService::RenderService(RenderWorker& worker, UnsupportedFeatures unsupported, const Config& config)
     : worker_(worker),
       unsupported_(std::move(unsupported)),
       limits_(limits_of(config)),
-      parse_slots_(std::ptrdiff_t(std::max<std::size_t>(config.parse_slots, 1))) {}
+      parse_slots_(std::ptrdiff_t(std::max<std::size_t>(config.parse_slots, 1))),
+      keys_(kKnownTexts),
+      cache_(config.cache_bytes),
+      table_id_(digest_of_file(config.tone_lut)) {}
+
+RenderService::~RenderService() = default;
+
+RenderService::CacheFigures RenderService::cache_figures() const {
+    return {cache_.figures(), hits_, misses_, shared_, not_modified_};
+}
+
+std::string RenderService::tag_of(const std::string& key) const {
+    const std::string device = device_class(worker_.status().device);
+    return device.empty() ? "" : sha256({key, build_id(), device, table_id_});
+}
+
+CheckedScene RenderService::check(const RenderRequest& request, const std::string& text_key, std::string& key) {
+    const Slot slot(parse_slots_);
+    CheckedScene checked = check_scene(request, limits_, unsupported_);
+    if (checked.scene) {
+        key = sha256({normal_form(*checked.scene)});
+        keys_.put(text_key, key);
+    }
+    return checked;
+}
 
 RenderResponse RenderService::render(const RenderRequest& request) {
-    const auto refused = [](RenderWorker::Refusal refusal) {
-        RenderResponse response;
-        response.failure = failure_of(refusal);
-        return response;
-    };
-    // A scene that cannot be rendered now is not worth its parsing.
-    if (const auto refusal = worker_.refusal()) return refused(*refusal);
-
     const Clock::time_point start = Clock::now();
+    // A text that was right once is known without being parsed.
+    const std::string text_key = sha256({request.text, to_string(request.formats)});
+    std::string key = keys_.find(text_key);
     CheckedScene checked;
-    {
-        const Slot slot(parse_slots_);
-        checked = check_scene(request, limits_, unsupported_);
-    }
-    return render_checked(std::move(checked), ms_since(start), [&](Scene&& scene) {
-        RenderedScene rendered;
-        auto ticket = worker_.submit(std::make_shared<const Scene>(std::move(scene)));
-        if (ticket.refusal) {
-            rendered.failure = failure_of(*ticket.refusal);
+    const auto parse = [&] {
+        // A scene that cannot be rendered now is not worth its parsing.
+        if (const auto refusal = worker_.refusal()) {
+            checked.failure = failure_of(*refusal);
         } else {
-            rendered.outcome = ticket.outcome.get();
+            checked = check(request, text_key, key);
         }
-        return rendered;
-    });
+        return checked.failure == RenderFailure::none;
+    };
+    if (key.empty() && !parse()) return refused(std::move(checked));
+
+    RenderResponse response;
+    response.tag = tag_of(key);
+    if (!response.tag.empty() && !request.anew) {
+        if (request.client_has && request.client_has(response.tag)) {
+            ++not_modified_;
+            response.not_modified = true;
+            return response;
+        }
+        response.answer = cache_.find(response.tag);
+        if (response.answer) {
+            ++hits_;
+            response.source = Source::cache;
+            response.parse_ms = ms_since(start);
+            return response;
+        }
+    }
+    if (!checked.scene && !parse()) return refused(std::move(checked));
+    response.parse_ms = ms_since(start);
+    render_shared(key, std::make_shared<const Scene>(std::move(*checked.scene)), response);
+    return response;
+}
+
+void RenderService::render_shared(const std::string& key, std::shared_ptr<const Scene> scene, RenderResponse& response) {
+    std::shared_ptr<Flight> flight;
+    const OutputSettings output = scene->output;
+    {
+        const std::lock_guard lock(flights_mutex_);
+        if (const auto found = flights_.find(key); found != flights_.end()) {
+            flight = found->second;
+            response.source = Source::shared;
+            ++shared_;
+        } else {
+            flight = std::make_shared<Flight>();
+            const auto refusal = worker_.submit(std::move(scene), [flight](RenderOutcome outcome) {
+                {
+                    const std::lock_guard inner(flight->mutex);
+                    flight->outcome = std::move(outcome);
+                }
+                flight->changed.notify_all();
+            });
+            if (refusal) {
+                response.failure = failure_of(*refusal);
+                return;
+            }
+            flights_.emplace(key, flight);
+            ++misses_;
+        }
+    }
+    std::unique_lock lock(flight->mutex);
+    flight->changed.wait(lock, [&] { return flight->done || (flight->outcome && !flight->encoding); });
+    if (!flight->done) {
+        flight->encoding = true;
+        RenderOutcome outcome = std::move(*flight->outcome);
+        lock.unlock();
+        SharedAnswer answer;
+        bool stored = false;
+        std::string error = std::move(outcome.error);
+        try {
+            if (outcome.result) {
+                answer = make_answer(std::move(*outcome.result), output);
+                // Only now is it certain which device it was.
+                if (const std::string tag = tag_of(key); !tag.empty()) stored = cache_.put(tag, answer);
+            }
+        } catch (const std::exception& problem) {
+            error = problem.what();
+        }
+        {
+            const std::lock_guard flights_lock(flights_mutex_);
+            flights_.erase(key);
+        }
+        lock.lock();
+        flight->failure = answer              ? RenderFailure::none
+                          : outcome.not_ready ? RenderFailure::not_ready
+                                              : RenderFailure::failed;
+        flight->error = std::move(error);
+        flight->answer = std::move(answer);
+        flight->queue_ms = outcome.wait_ms;
+        flight->stored = stored;
+        flight->done = true;
+        flight->changed.notify_all();
+    }
+    response.failure = flight->failure;
+    response.error = flight->error;
+    response.answer = flight->answer;
+    response.queue_ms = flight->queue_ms;
+    response.stored = flight->stored;
+    lock.unlock();
+    if (response.tag.empty()) response.tag = tag_of(key);
 }
 
 }  // namespace penumbra

@@ -3,16 +3,20 @@
 // the same bytes. Knows nothing of HTTP.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <semaphore>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "core/scene/limits.h"
 #include "server/json/scene_json.h"
+#include "server/service/answer_cache.h"
 #include "server/service/config.h"
 #include "server/service/engine.h"
 #include "server/service/formats.h"
@@ -24,6 +28,17 @@ struct RenderRequest {
     std::string_view text;
     FormatWishes formats = any_format();
     std::vector<Override> overrides;
+    // Of the server alone:
+    // Whether the client says that it has the picture with this tag already; empty: it says nothing.
+    std::function<bool(const std::string& tag)> client_has;
+    bool anew = false;  // no answer from the cache
+};
+
+// Where an answer came from.
+enum class Source {
+    rendered,
+    cache,
+    shared,  // another request's render of the same scene, which was under way
 };
 
 enum class RenderFailure {
@@ -39,22 +54,20 @@ enum class RenderFailure {
 struct RenderResponse {
     RenderFailure failure = RenderFailure::none;
 
-    Bytes picture;
-    std::string format;  // of `picture`, as output.format
-    RenderStats stats;
-    double queue_ms = 0, parse_ms = 0, encode_ms = 0;
+    SharedAnswer answer;        // set exactly without a failure, unless not_modified
+    bool not_modified = false;  // the client has the picture
+    std::string tag;            // names the picture's bytes; "" while the device is not known
+    Source source = Source::rendered;
+    bool stored = false;  // in the cache, now
+    double queue_ms = 0, parse_ms = 0;
 
     std::vector<LocatedProblem> problems;
     std::size_t problems_left_out = 0;
     std::string error;  // for operators, not for clients
 };
 
-// Where a valid scene goes: straight to a backend, or through the worker's queue.
-struct RenderedScene {
-    RenderFailure failure = RenderFailure::none;
-    RenderOutcome outcome;
-};
-using SceneRenderer = std::function<RenderedScene(Scene&&)>;
+// Where a valid scene goes.
+using SceneRenderer = std::function<RenderResult(const Scene&)>;
 
 struct SceneLimits {
     Limits scene;
@@ -77,22 +90,46 @@ CheckedScene check_scene(const RenderRequest& request, const SceneLimits& limits
 RenderResponse render_to_bytes(const RenderRequest& request, const SceneLimits& limits,
                                const UnsupportedFeatures& unsupported, const SceneRenderer& render);
 
-// render_to_bytes() through the worker. Any thread may call it; it waits for its render.
+// The same through the worker's queue, and past it where nothing new is to be rendered. Any thread may call it; it waits for
+// its render.
 class RenderService {
 public:
     RenderService(RenderWorker& worker, UnsupportedFeatures unsupported, const Config& config);
+    ~RenderService();
+    RenderService(const RenderService&) = delete;
+    RenderService& operator=(const RenderService&) = delete;
 
     RenderResponse render(const RenderRequest& request);
+
+    struct CacheFigures {
+        AnswerCache::Figures kept;
+        std::uint64_t hits = 0, misses = 0, shared = 0, not_modified = 0;
+    };
+    CacheFigures cache_figures() const;
 
     RenderWorker& worker() { return worker_; }
     const SceneLimits& limits() const { return limits_; }
     const UnsupportedFeatures& unsupported() const { return unsupported_; }
 
 private:
+    struct Flight;
+
+    // Parses and checks; the scene's key goes to `key`.
+    CheckedScene check(const RenderRequest& request, const std::string& text_key, std::string& key);
+    // Joins the render of this scene that is under way, or begins one.
+    void render_shared(const std::string& key, std::shared_ptr<const Scene> scene, RenderResponse& response);
+    std::string tag_of(const std::string& key) const;
+
     RenderWorker& worker_;
     UnsupportedFeatures unsupported_;
     SceneLimits limits_;
     std::counting_semaphore<> parse_slots_;
+    TextMemo keys_;  // of right scenes, by their text
+    AnswerCache cache_;
+    std::string table_id_;  // of the tone map "tony"
+    std::mutex flights_mutex_;
+    std::unordered_map<std::string, std::shared_ptr<Flight>> flights_;  // by the scene's key
+    std::atomic<std::uint64_t> hits_{0}, misses_{0}, shared_{0}, not_modified_{0};
 };
 
 }  // namespace penumbra

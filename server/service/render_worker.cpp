@@ -16,8 +16,8 @@ double ms_since(Clock::time_point start) {
 
 }  // namespace
 
-RenderWorker::RenderWorker(BackendFactory factory, std::size_t queue_capacity, const Log& log)
-    : log_(log), capacity_(std::max<std::size_t>(queue_capacity, 1)) {
+RenderWorker::RenderWorker(BackendFactory factory, std::size_t queue_capacity, const Log& log, std::vector<WarmUpScene> warm_up)
+    : log_(log), capacity_(std::max<std::size_t>(queue_capacity, 1)), warm_up_(std::move(warm_up)) {
     status_.reason = "The renderer is starting.";
     status_.capacity = capacity_;
     thread_ = std::thread([this, make = std::move(factory)] { run(make); });
@@ -45,15 +45,20 @@ std::optional<RenderWorker::Refusal> RenderWorker::refusal() const {
 
 RenderWorker::Ticket RenderWorker::submit(std::shared_ptr<const Scene> scene) {
     Ticket ticket;
+    auto promise = std::make_shared<std::promise<RenderOutcome>>();
+    ticket.outcome = promise->get_future();
+    ticket.refusal = submit(std::move(scene), [promise](RenderOutcome outcome) { promise->set_value(std::move(outcome)); });
+    return ticket;
+}
+
+std::optional<RenderWorker::Refusal> RenderWorker::submit(std::shared_ptr<const Scene> scene, Done done) {
     {
         const std::lock_guard lock(mutex_);
-        ticket.refusal = refusal_locked();
-        if (ticket.refusal) return ticket;
-        queue_.push_back({std::move(scene), {}, Clock::now()});
-        ticket.outcome = queue_.back().promise.get_future();
+        if (const auto refusal = refusal_locked()) return refusal;
+        queue_.push_back({std::move(scene), std::move(done), Clock::now()});
     }
     changed_.notify_all();
-    return ticket;
+    return std::nullopt;
 }
 
 RenderWorker::Status RenderWorker::status() const {
@@ -102,7 +107,7 @@ bool RenderWorker::make_backend(const BackendFactory& factory) {
     return false;
 }
 
-void RenderWorker::test_backend() {
+void RenderWorker::test_backend(State when_right) {
     std::string wrong;
     try {
         wrong = backend_->self_test();
@@ -112,11 +117,29 @@ void RenderWorker::test_backend() {
         wrong = "The self test ended with an unknown exception.";
     }
     if (wrong.empty()) {
-        set_state(State::ready, "");
+        set_state(when_right, when_right == State::ready ? "" : "The renderer is starting.");
     } else {
         log_.error("The self test failed", {{"error", wrong}});
         set_state(State::failing, wrong);
     }
+}
+
+// One scene of the warm-up; after the last it is ready.
+void RenderWorker::warm_up_next() {
+    const Clock::time_point start = Clock::now();
+    if (warmed_ < warm_up_.size()) {
+        const WarmUpScene& item = warm_up_[warmed_++];
+        try {
+            backend_->render(item.scene);
+        } catch (const std::exception& error) {
+            // Such a scene will fail when a client sends it; others need not.
+            log_.warning("A scene of the warm-up failed", {{"scene", item.name}, {"error", std::string(error.what())}});
+        }
+        warm_up_ms_ += ms_since(start);
+    }
+    if (warmed_ < warm_up_.size()) return;
+    if (!warm_up_.empty()) log_.info("warm", {{"scenes", std::int64_t(warmed_)}, {"ms", warm_up_ms_}});
+    set_state(State::ready, "");
 }
 
 // After an exception the context may be lost. A wrong test is answered with a fresh one, once.
@@ -151,28 +174,38 @@ RenderOutcome RenderWorker::render(const Scene& scene, const BackendFactory& fac
 }
 
 void RenderWorker::run(const BackendFactory& factory) {
-    if (make_backend(factory)) test_backend();
+    if (make_backend(factory)) test_backend(State::starting);
+    bool warming = status().state == State::starting;  // the self test was right
     for (;;) {
         Job job;
-        bool usable = false;
+        bool usable = warming;
         {
             std::unique_lock lock(mutex_);
-            changed_.wait(lock, [&] { return stopping_ || !queue_.empty(); });
-            if (queue_.empty()) break;
-            job = std::move(queue_.front());
-            queue_.pop_front();
-            usable = status_.state == State::ready;
+            changed_.wait(lock, [&] { return stopping_ || warming || !queue_.empty(); });
+            if (queue_.empty() && stopping_) break;
+            if (!queue_.empty()) {
+                job = std::move(queue_.front());
+                queue_.pop_front();
+            }
+            usable = usable || status_.state == State::ready;
         }
-        const double wait_ms = ms_since(job.since);
-        RenderOutcome outcome;
-        if (usable) {
-            outcome = render(*job.scene, factory);
-        } else {
-            outcome.not_ready = true;
-            outcome.error = "the renderer is not ready: " + status().reason;
+        if (job.scene) {
+            const double wait_ms = ms_since(job.since);
+            RenderOutcome outcome;
+            if (usable) {
+                outcome = render(*job.scene, factory);
+            } else {
+                outcome.not_ready = true;
+                outcome.error = "the renderer is not ready: " + status().reason;
+            }
+            outcome.wait_ms = wait_ms;
+            job.done(std::move(outcome));
         }
-        outcome.wait_ms = wait_ms;
-        job.promise.set_value(std::move(outcome));
+        // Whoever cannot wait until it is ready waits for one scene of the warm-up, not for all.
+        if (warming) {
+            if (status().state == State::starting) warm_up_next();
+            warming = status().state == State::starting;
+        }
     }
     backend_.reset();
 }

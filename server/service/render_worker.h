@@ -6,15 +6,18 @@
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "server/service/engine.h"
 #include "server/service/log.h"
+#include "server/service/warm_up.h"
 
 namespace penumbra {
 
@@ -44,7 +47,8 @@ public:
     };
     enum class Refusal { queue_full, not_ready };
 
-    RenderWorker(BackendFactory factory, std::size_t queue_capacity, const Log& log);
+    // Renders `warm_up` before it is ready; requests that come meanwhile go before the rest of it.
+    RenderWorker(BackendFactory factory, std::size_t queue_capacity, const Log& log, std::vector<WarmUpScene> warm_up = {});
     // Finishes what is queued.
     ~RenderWorker();
     RenderWorker(const RenderWorker&) = delete;
@@ -52,10 +56,13 @@ public:
 
     struct Ticket {
         std::optional<Refusal> refusal;
-        std::future<RenderOutcome> outcome;  // valid exactly without a refusal
+        std::future<RenderOutcome> outcome;  // never comes after a refusal
     };
     // Never waits. The scene has passed validation.
     Ticket submit(std::shared_ptr<const Scene> scene);
+    // The same; `done` is called on the worker's thread, once, unless it is refused. It must not take long.
+    using Done = std::function<void(RenderOutcome)>;
+    std::optional<Refusal> submit(std::shared_ptr<const Scene> scene, Done done);
 
     // Whether submit() would refuse now: asked before the work of parsing a scene.
     std::optional<Refusal> refusal() const;
@@ -71,13 +78,14 @@ public:
 private:
     struct Job {
         std::shared_ptr<const Scene> scene;
-        std::promise<RenderOutcome> promise;
+        Done done;
         std::chrono::steady_clock::time_point since;
     };
 
     void run(const BackendFactory& factory);
     bool make_backend(const BackendFactory& factory);  // false: there is none
-    void test_backend();
+    void test_backend(State when_right = State::ready);
+    void warm_up_next();
     RenderOutcome render(const Scene& scene, const BackendFactory& factory);
     void recover(const BackendFactory& factory);
     void set_state(State state, std::string reason);
@@ -92,7 +100,12 @@ private:
     bool stopping_ = false;
     Status status_;
 
-    std::unique_ptr<RenderBackend> backend_;  // touched by the thread alone
+    // Touched by the thread alone:
+    const std::vector<WarmUpScene> warm_up_;
+    std::size_t warmed_ = 0;  // how many of them
+    double warm_up_ms_ = 0;
+    std::unique_ptr<RenderBackend> backend_;
+
     std::thread thread_;                      // last: it uses all above
 };
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/scene/words.h"
+#include "server/service/identity.h"
 #include "server/service/version.h"
 
 namespace penumbra {
@@ -99,7 +100,7 @@ Json supported_formats(const UnsupportedFeatures& unsupported) {
 
 std::string info_json(const DeviceInfo* device, const std::vector<DeviceListing>* listing,
                       const SceneLimits& limits, const UnsupportedFeatures& unsupported) {
-    Json json = {{"name", "penumbra"}, {"version", version()}, {"scene_version", 1}};
+    Json json = {{"name", "penumbra"}, {"version", version()}, {"build", build_id().substr(0, 16)}, {"scene_version", 1}};
     json["device"] = device ? to_json(*device) : Json(nullptr);
     if (listing) {
         json["devices"] = Json::array();
@@ -118,15 +119,15 @@ std::string info_json(const DeviceInfo* device, const std::vector<DeviceListing>
 }
 
 std::string stats_json(const RenderResponse& response) {
-    const RenderStats& stats = response.stats;
+    const RenderStats& stats = response.answer->stats;
     Json json = {{"device", stats.device},
                  {"method", stats.method},
                  {"method_reason", stats.method_reason},
                  {"size", {stats.width, stats.height}},
-                 {"format", response.format},
+                 {"format", response.answer->format},
                  {"total_ms", stats.total_ms},
                  {"parse_ms", response.parse_ms},
-                 {"encode_ms", response.encode_ms},
+                 {"encode_ms", response.answer->encode_ms},
                  {"gpu_bytes", stats.gpu_bytes},
                  {"lost_rays", stats.lost_rays},
                  {"passes", Json::array()},

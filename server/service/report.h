@@ -14,6 +14,7 @@ namespace penumbra {
 std::string info_json(const DeviceInfo* device, const std::vector<DeviceListing>* listing,
                       const SceneLimits& limits, const UnsupportedFeatures& unsupported);
 
+// Precondition: no failure.
 std::string stats_json(const RenderResponse& response);
 
 // {"valid": ..., "problems": [...], "problems_left_out": n}

@@ -25,7 +25,7 @@ Point pixel_centre(const Scene& scene, const Plan& plan, int x, int y) {
 // Every pixel of the grid within `bound` pixels of the exact distance (`inside_bound` inside), the material the exact
 // one.
 void expect_exact(const Scene& scene, double bound, const std::string& what, double inside_bound = 0) {
-    const Plan plan = make_plan(scene, {});
+    const Plan plan = pass_plan(scene);
     const Field field = run_distance(scene, plan);
     ASSERT_EQ(field.size, plan.grid.size);
     const double side = scene.canvas.pixel_size();
@@ -153,7 +153,7 @@ TEST(Distance, SlicesAndBandsChangeNothing) {
         scene.shapes.push_back(shape(Circle{at, numbers.between(0.5, 6)}));
         scene.shapes.push_back(shape(Polyline{{at, at + Point(4, 1), at + Point(1, 5)}, 0.7, true}));
     }
-    Plan plan = make_plan(scene, {});
+    Plan plan = pass_plan(scene);
     plan.list_shapes = false;
     ASSERT_EQ(plan.shape_slices.size(), 1u);
     const Field whole = run_distance(scene, plan);
@@ -167,7 +167,7 @@ TEST(Distance, SlicesAndBandsChangeNothing) {
 TEST(Distance, WritesNothingOutsideItsExtent) {
     shared_context();
     const Scene scene = with(canvas(37, 29), {shape(Circle{{18.3, 14.1}, 6.2})});
-    const Plan plan = make_plan(scene, {});
+    const Plan plan = pass_plan(scene);
     const SceneBuffers buffers(pack_scene(scene, 1), scene.sky, plan);
     buffers.bind();
     DistanceField field{gl::Texture2D(GL_R32F, {64, 48}), gl::Texture2D(GL_R32I, {64, 48})};
@@ -195,7 +195,7 @@ TEST(Distance, WritesNothingOutsideItsExtent) {
 
 TEST(Distance, EmptyFieldIsAsFarAsTheDiagonal) {
     shared_context();
-    const Plan plan = make_plan(canvas(4096, 300), {});
+    const Plan plan = pass_plan(canvas(4096, 300));
     const Field field = read_field(DistancePass::empty_field(plan));
     EXPECT_EQ(field.size, glm::ivec2(1));
     EXPECT_FLOAT_EQ(field.distance[0], std::hypot(4096.0f, 300.0f));

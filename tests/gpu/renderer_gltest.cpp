@@ -146,6 +146,7 @@ TEST(Failure, APictureTooLargeLeavesTheRendererWorking) {
     if (shared_renderer().device().kind != "cpu") return;  // the next size fits a GPU
     Scene huge = canvas(8192, 8192);
     huge.sky.radiance = Colour(1);
+    huge.shapes.push_back(shape(Circle{{50, 50}, 9}));
     huge.render.quality = Quality::high;
     huge.render.method = "rc";  // others fit
     EXPECT_THROW(shared_renderer().render(huge), DeviceError);

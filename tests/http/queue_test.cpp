@@ -23,16 +23,16 @@ TEST(Queue, BeyondItsPlacesIs503WithRetryAfterAndTheRestIsServed) {
     service.worker->wait_until_started();
     service.control->close_gate();
     std::vector<std::future<int>> answers;
-    const auto ask = [&] {
-        answers.push_back(std::async(std::launch::async, [&] {
-            const auto result = service.post(kScene);
+    const auto ask = [&](int n) {
+        answers.push_back(std::async(std::launch::async, [&, n] {
+            const auto result = service.post(scene_number(n));
             return result ? result->status : 0;
         }));
     };
-    ask();
+    ask(0);
     service.control->wait_for_begun(1);
-    ask();
-    ask();
+    ask(1);
+    ask(2);
     wait_for_waiting(*service.worker, 2);
 
     const auto refused = service.post(kScene);
@@ -97,8 +97,8 @@ TEST(Queue, StoppingTheServerAnswersWhatWasAsked) {
     service.control->close_gate();
     std::vector<std::future<int>> answers;
     for (int i = 0; i < 3; ++i) {
-        answers.push_back(std::async(std::launch::async, [&] {
-            const auto result = service.post(kScene);
+        answers.push_back(std::async(std::launch::async, [&, i] {
+            const auto result = service.post(scene_number(i));
             return result ? result->status : 0;
         }));
     }
@@ -118,10 +118,10 @@ TEST(Queue, ManyClientsAtOnceAllGetAnAnswer) {
     const Service service(config);
     std::vector<std::future<int>> answers;
     for (int i = 0; i < 24; ++i) {
-        answers.push_back(std::async(std::launch::async, [&] {
+        answers.push_back(std::async(std::launch::async, [&, i] {
             int bad = 0;
             for (int n = 0; n < 5; ++n) {
-                const auto result = service.post(kScene);
+                const auto result = service.post(scene_number(5 * i + n));
                 if (!result || (result->status != 200 && result->status != 503)) ++bad;
             }
             return bad;

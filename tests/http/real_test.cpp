@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <chrono>
 #include <sstream>
+#include <thread>
 
 #include <httplib.h>
 #include <nlohmann/json.hpp>
@@ -25,7 +27,7 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
 // A cold compile of the shaders for each process is what a fresh machine does; here once is enough.
 TEST(Real, CommandLineAndServiceGiveTheSameBytes) {
     const TemporaryFolder folder;
-    Running program(PENUMBRA_PROGRAM, {"serve", "--port", "0", "--port-file", folder.path("port")});
+    Running program(PENUMBRA_PROGRAM, {"serve", "--port", "0", "--port-file", folder.path("port"), "--warm-up", "none"});
     const int port = wait_for_port(folder.path("port"));
     ASSERT_GT(port, 0) << program.err();
     httplib::Client client("127.0.0.1", port);
@@ -71,10 +73,51 @@ TEST(Real, CommandLineAndServiceGiveTheSameBytes) {
     EXPECT_EQ(program.wait(), 0) << program.err();
 }
 
+double timing_of(const httplib::Result& result, const std::string& name) {
+    const std::string timing = result->get_header_value("Server-Timing");
+    const std::size_t at = timing.find(name + ";dur=");
+    return at == std::string::npos ? -1 : std::stod(timing.substr(at + name.size() + 5));
+}
+
+// With an empty shader cache, other methods in between: a driver that compiles again takes a quarter of a second and more.
+TEST(Real, AfterTheWarmUpNothingIsCompiledForCommonScenes) {
+    const TemporaryFolder folder;
+    Running program(PENUMBRA_PROGRAM, {"serve", "--port", "0", "--port-file", folder.path("port")},
+                    {{"MESA_SHADER_CACHE_DIR", folder.path("shaders")}});
+    const int port = wait_for_port(folder.path("port"));
+    ASSERT_GT(port, 0) << program.err();
+    httplib::Client client("127.0.0.1", port);
+    client.set_read_timeout(60);
+    for (int i = 0; i < 6000 && client.Get("/readyz")->status != 200; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    const auto post = [&](int width, int height, const std::string& shapes, const std::string& rest = "") {
+        return client.Post("/v1/render", {{"Cache-Control", "no-cache"}},
+                           R"({"version": 1, "canvas": {"width": )" + std::to_string(width) + R"(, "height": )" +
+                               std::to_string(height) + R"(}, "shapes": [)" + shapes + "]" + rest + "}",
+                           "application/json");
+    };
+    const std::string disc = R"({"type": "circle", "center": [30, 25], "radius": 6, "emission": 1})";
+    const std::string wall = R"({"type": "rect", "center": [50, 25], "size": [4, 20], "rotation": 3})";
+    const std::string arcs = disc + R"(, {"type": "circle", "center": [38, 25], "radius": 7, "emission": 1})";
+    const std::string sky = R"(, "sky": {"radiance": 0.2})";
+    for (const auto& [width, height] : {std::pair{256, 128}, {200, 150}}) {
+        for (const auto& [shapes, rest] : {std::pair{disc, std::string()}, {disc + ", " + wall, sky}, {arcs, std::string()}, {arcs, sky}}) {
+            ASSERT_EQ(post(width, height, disc, R"(, "render": {"method": "hrc"})")->status, 200) << program.err();
+            const auto first = post(width, height, shapes, rest), second = post(width, height, shapes, rest);
+            ASSERT_TRUE(first && second);
+            ASSERT_EQ(first->status, 200) << first->body;
+            for (const char* pass : {"exact-lists", "exact-points-8", "exact-points-1", "compose"}) {
+                EXPECT_GE(timing_of(first, pass), 0) << pass;
+                EXPECT_LT(timing_of(first, pass), timing_of(second, pass) + 150)
+                    << pass << " of " << width << " x " << height << shapes << rest;
+            }
+        }
+    }
+}
+
 TEST(Real, EveryNameInServerTimingIsDescribed) {
     const std::string api = read_file(PENUMBRA_SOURCE_DIR "/docs/api.md");
     const TemporaryFolder folder;
-    Running program(PENUMBRA_PROGRAM, {"serve", "--port", "0", "--port-file", folder.path("port")});
+    Running program(PENUMBRA_PROGRAM, {"serve", "--port", "0", "--port-file", folder.path("port"), "--warm-up", "none"});
     const int port = wait_for_port(folder.path("port"));
     ASSERT_GT(port, 0) << program.err();
     httplib::Client client("127.0.0.1", port);

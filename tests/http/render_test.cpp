@@ -27,7 +27,7 @@ TEST(Render, TellsTimesOfQueueParsePassesAndEncode) {
     const auto result = service.post(kScene);
     ASSERT_TRUE(result);
     const std::string timing = result->get_header_value("Server-Timing");
-    for (const char* name : {"queue;dur=", "parse;dur=", "distance;dur=1.00", "cascade-0;dur=1.00", "encode;dur=", "total;dur="}) {
+    for (const char* name : {"queue;dur=", "parse;dur=", "distance;dur=1.00", "cascade-0;dur=1.00", "render;dur=2.00", "encode;dur=", "total;dur="}) {
         EXPECT_NE(timing.find(name), std::string::npos) << name << " in " << timing;
     }
     EXPECT_EQ(result->get_header_value("Vary"), "Accept");

@@ -27,7 +27,7 @@ struct Served {
           port(wait_for_port(folder.path("port"))) {}
 
     std::vector<std::string> full(std::vector<std::string> more) const {
-        std::vector<std::string> all{"serve", "--port", "0", "--port-file", folder.path("port")};
+        std::vector<std::string> all{"serve", "--port", "0", "--port-file", folder.path("port"), "--warm-up", "none"};
         all.insert(all.end(), more.begin(), more.end());
         return all;
     }

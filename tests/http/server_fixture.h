@@ -20,12 +20,17 @@ inline const std::string kScene =
     R"({"version": 1, "canvas": {"width": 40, "height": 30}, "sky": {"radiance": 0.5}})";
 inline const char* const kJson = "application/json";
 
+// One of many scenes that render alike and have nothing else in common.
+inline std::string scene_number(int n) {
+    return R"({"version": 1, "canvas": {"width": 40, "height": 30, "margin": )" + std::to_string(n) + "}}";
+}
+
 class Service {
 public:
     explicit Service(Config config = {}, std::shared_ptr<FakeControl> the_control = std::make_shared<FakeControl>())
         : control(std::move(the_control)), engine(fake_engine(control)), settings(local(std::move(config))) {
         worker = std::make_unique<RenderWorker>([this] { return engine.make_backend({}); },
-                                                settings.queue_capacity, log);
+                                                settings.queue_capacity, log, warm_up_scenes(settings.warm_up));
         service = std::make_unique<RenderService>(*worker, engine.unsupported_with({}), settings);
         server = std::make_unique<HttpServer>(*service, settings, log);
         const std::string why = server->start();
@@ -62,6 +67,8 @@ private:
     static Config local(Config config) {
         config.host = "127.0.0.1";
         config.port = 0;
+        // Renders are counted; tests of the warm-up make their own worker.
+        config.warm_up = WarmUp::none;
         return config;
     }
 };

@@ -455,12 +455,28 @@ TEST(Pack, ThinShapesAreFattenedAndTheirLightScaledDown) {
     const PackedScene packed = pack_scene(scene, 1);
     EXPECT_EQ(texel(packed, 0, 0).y, 0);
     EXPECT_EQ(texel(packed, 0, 1).w, 1);
-    for (const auto& [shape, half] : {std::pair(1, 0.01), std::pair(2, 0.05)}) {
+    // A convex shape is seen as wide as its perimeter over pi (Cauchy): growing must not make it shine more.
+    struct Thin {
+        int shape;
+        double half, perimeter;
+    };
+    constexpr double kTwoPi = 2 * std::numbers::pi;
+    for (const auto& [shape, half, perimeter] : {Thin{1, 0.01, 2 * std::hypot(8, 8) + kTwoPi * 0.01}, Thin{2, 0.05, kTwoPi * 0.05}}) {
         const double fat = half + double(texel(packed, shape, 0).y);
         EXPECT_NEAR(fat, half + thin_shape_growth(half), 1e-7);
         EXPECT_GE(fat, 0.125) << "half of the shortest step";
-        EXPECT_NEAR(double(texel(packed, shape, 1).w), half / fat, 1e-6);
+        EXPECT_NEAR(double(texel(packed, shape, 1).w), perimeter / (perimeter + kTwoPi * (fat - half)), 1e-6);
     }
+}
+
+TEST(Pack, SliversOfPolygonsAreFattenedAndThickOnesAreNot) {
+    Scene scene = scene_of(40, 40);
+    scene.shapes = {shape_of(Polygon{{{1, 1}, {31, 1}, {31, 1.004}}}), shape_of(Polygon{{{1, 10}, {31, 10}, {31, 20}}})};
+    const PackedScene packed = pack_scene(scene, 1);
+    EXPECT_NEAR(texel(packed, 0, 0).y, 0.125, 2e-3);
+    EXPECT_GT(texel(packed, 0, 1).w, 0.97f);
+    EXPECT_EQ(texel(packed, 1, 0).y, 0);
+    EXPECT_EQ(texel(packed, 1, 1).w, 1);
 }
 
 // ---- sky ----------------------------------------------------------------------------------------

@@ -423,6 +423,8 @@ TEST(SceneJson, EveryKeyWithEveryWrongKind) {
         {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "render": {"quality": )", "}}",
          "s"},
         {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "render": {"bounces": )", "}}",
+         "ns"},
+        {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "render": {"tolerance": )", "}}",
          "n"},
         {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "render": {"skip": )", "}}", "s"},
         {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "render": {"view": )", "}}", "s"},
