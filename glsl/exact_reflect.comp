@@ -6,11 +6,12 @@
 layout(local_size_x = kExactGroupX, local_size_y = kExactGroupY) in;
 layout(std140, binding = kExactParamsBinding) uniform Params { ExactParams params; };
 layout(binding = kExactSurfacesUnit) uniform samplerBuffer surfaces;
+layout(binding = kExactElementsUnit) uniform samplerBuffer elements_before;
 layout(binding = kExactMaterialsUnit) uniform samplerBuffer materials;
 layout(binding = kExactNodeValuesUnit) uniform sampler2D irradiance;
 layout(binding = kExactNodeLightsUnit) uniform sampler2D light_irradiance;
-layout(std430, binding = kExactElementsStorage) buffer Elements { vec4 elements[]; };
-layout(std430, binding = kExactChangeStorage) buffer Change { uint change[]; };
+layout(std430, binding = kExactElementsStorage) writeonly buffer Elements { vec4 elements[]; };
+layout(std430, binding = kExactChangeStorage) buffer ChangeCounters { uint change[]; };
 
 vec3 shine(int element, vec3 emission, vec3 half_albedo) {
     ivec2 at = ivec2(element % kExactNodeRow, element / kExactNodeRow);
@@ -62,7 +63,7 @@ void main() {
                                         : has_back ? back : has_on ? on : vec3(0.0);
         vec3 across = clamp(slope * size, -2.0 * here, 2.0 * here);
         int at = kExactElementTexels * (first + i);
-        most_change = max(most_change, abs(here - elements[at + 1].rgb));
+        if (params.level != 0) most_change = max(most_change, abs(here - texelFetch(elements_before, at + 1).rgb));
         most = max(most, here);
         elements[at] = vec4(sum, u);
         elements[at + 1] = vec4(here, size);

@@ -74,7 +74,7 @@ ExactPass::ExactPass(const std::string& shader_dir)
 
 std::size_t ExactPass::bytes() const {
     return coarse_heads_.bytes() + coarse_entries_.bytes() + coarse_lights_.bytes() + heads_.bytes() + entries_.bytes() +
-           lights_.bytes() + points_.bytes() + counters_.bytes() + means_.bytes() + elements_.bytes();
+           lights_.bytes() + points_.bytes() + counters_.bytes() + means_.bytes() + elements_.bytes() + elements_before_.bytes();
 }
 
 gl::ComputeProgram& ExactPass::lists_for(const ExactPlan& exact) {
@@ -229,6 +229,9 @@ PassWork ExactPass::reflect(const Plan& plan, Band& band, bool first) {
         band.lights.bind_texture(glsl::kExactNodeLightsUnit);
         params.light_scale = static_cast<float>(1.0 / plan.radiance_scale);
     }
+    // The next elements are made from the last.
+    std::swap(elements_, elements_before_);
+    elements_before_.bind_texture(glsl::kExactElementsUnit);
     elements_.bind_storage(glsl::kExactElementsStorage);
     change_.bind_storage(glsl::kExactChangeStorage);
     PassWork work;
@@ -240,7 +243,8 @@ PassWork ExactPass::reflect(const Plan& plan, Band& band, bool first) {
 void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass& delta, const Record& record, Band& band) {
     const ExactPlan& exact = plan.exact;
     const Surfaces& surfaces = exact.outline.surfaces;
-    elements_ = at_least(std::move(elements_), GL_RGBA32F, surfaces.elements * glsl::kExactElementTexels * 16);
+    for (gl::StorageBuffer* buffer : {&elements_, &elements_before_})
+        *buffer = at_least(std::move(*buffer), GL_RGBA32F, surfaces.elements * glsl::kExactElementTexels * 16);
     band.surfaces = gl::BufferTexture(GL_RGBA32F, surfaces.pieces.data(), surfaces.pieces.size() * 16);
     band.materials = gl::BufferTexture(GL_RGBA32F, surfaces.materials.data(), surfaces.materials.size() * 16);
     const glm::ivec2 image{glsl::kExactNodeRow, divided_up(static_cast<int>(surfaces.elements), glsl::kExactNodeRow)};

@@ -71,7 +71,7 @@ private:
     gl::StorageBuffer coarse_heads_, coarse_entries_, coarse_lights_;
     gl::StorageBuffer heads_, entries_, lights_;
     gl::StorageBuffer points_, jobs_, counters_, means_;
-    gl::StorageBuffer elements_, change_;
+    gl::StorageBuffer elements_, elements_before_, change_;
 };
 
 }  // namespace penumbra

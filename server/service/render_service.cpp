@@ -115,6 +115,7 @@ RenderResponse render_to_bytes(const RenderRequest& request, const SceneLimits& 
 
 // One render that one or more requests wait for. The first of them that sees it done encodes it for all.
 struct RenderService::Flight {
+    OutputSettings output;
     std::mutex mutex;
     std::condition_variable changed;
     std::optional<RenderOutcome> outcome;
@@ -167,6 +168,9 @@ RenderResponse RenderService::render(const RenderRequest& request) {
     const auto parse = [&] {
         // A scene that cannot be rendered now is not worth its parsing.
         if (const auto refusal = worker_.refusal()) {
+            // Unless an equal one is under way: it shares that one's picture, and takes no place.
+            if (key.empty()) key = keys_.find(text_key);
+            if (is_under_way(key)) return true;
             checked.failure = failure_of(*refusal);
         } else {
             checked = check(request, text_key, key);
@@ -193,13 +197,17 @@ RenderResponse RenderService::render(const RenderRequest& request) {
     }
     if (!checked.scene && !parse()) return refused(std::move(checked));
     response.parse_ms = ms_since(start);
-    render_shared(key, std::make_shared<const Scene>(std::move(*checked.scene)), response);
+    render_shared(key, checked.scene ? std::make_shared<const Scene>(std::move(*checked.scene)) : nullptr, response);
     return response;
+}
+
+bool RenderService::is_under_way(const std::string& key) {
+    const std::lock_guard lock(flights_mutex_);
+    return !key.empty() && flights_.contains(key);
 }
 
 void RenderService::render_shared(const std::string& key, std::shared_ptr<const Scene> scene, RenderResponse& response) {
     std::shared_ptr<Flight> flight;
-    const OutputSettings output = scene->output;
     {
         const std::lock_guard lock(flights_mutex_);
         if (const auto found = flights_.find(key); found != flights_.end()) {
@@ -207,7 +215,12 @@ void RenderService::render_shared(const std::string& key, std::shared_ptr<const 
             response.source = Source::shared;
             ++shared_;
         } else {
+            if (!scene) {  // the one to be shared has ended since
+                response.failure = RenderFailure::queue_full;
+                return;
+            }
             flight = std::make_shared<Flight>();
+            flight->output = scene->output;
             const auto refusal = worker_.submit(std::move(scene), [flight](RenderOutcome outcome) {
                 {
                     const std::lock_guard inner(flight->mutex);
@@ -234,7 +247,7 @@ void RenderService::render_shared(const std::string& key, std::shared_ptr<const 
         std::string error = std::move(outcome.error);
         try {
             if (outcome.result) {
-                answer = make_answer(std::move(*outcome.result), output);
+                answer = make_answer(std::move(*outcome.result), flight->output);
                 // Only now is it certain which device it was.
                 if (const std::string tag = tag_of(key); !tag.empty()) stored = cache_.put(tag, answer);
             }

@@ -116,7 +116,8 @@ private:
 
     // Parses and checks; the scene's key goes to `key`.
     CheckedScene check(const RenderRequest& request, const std::string& text_key, std::string& key);
-    // Joins the render of this scene that is under way, or begins one.
+    bool is_under_way(const std::string& key);
+    // Joins the render of this scene that is under way, or begins one. Without a scene it only joins, or finds the queue full.
     void render_shared(const std::string& key, std::shared_ptr<const Scene> scene, RenderResponse& response);
     std::string tag_of(const std::string& key) const;
 

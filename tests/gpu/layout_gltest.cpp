@@ -12,6 +12,7 @@
 #include "core/gl/program.h"
 #include "glsl/cascade.h"
 #include "glsl/compose.h"
+#include "glsl/delta.h"
 #include "glsl/distance.h"
 #include "glsl/exact.h"
 #include "glsl/hrc.h"
@@ -68,12 +69,22 @@ Offsets exact_fields() {
             FIELD(ExactParams, sky_nodes), FIELD(ExactParams, cell), FIELD(ExactParams, level),
             FIELD(ExactParams, first_point), FIELD(ExactParams, tile_points),
             FIELD(ExactParams, first_count), FIELD(ExactParams, capacity), FIELD(ExactParams, continues),
-            FIELD(ExactParams, pad4a), FIELD(ExactParams, tolerance), FIELD(ExactParams, kink_cell),
+            FIELD(ExactParams, light_scale), FIELD(ExactParams, tolerance), FIELD(ExactParams, kink_cell),
             FIELD(ExactParams, floor_share), FIELD(ExactParams, ask_first), FIELD(ExactParams, strict_dark),
             FIELD(ExactParams, pad0), FIELD(ExactParams, pad1), FIELD(ExactParams, root_counts),
-            FIELD(ExactParams, root_lights), FIELD(ExactParams, wide), FIELD(ExactParams, pad2),
-            FIELD(ExactParams, pad5), FIELD(ExactParams, pad6), FIELD(ExactParams, window),
+            FIELD(ExactParams, root_lights), FIELD(ExactParams, wide), FIELD(ExactParams, jobs),
+            FIELD(ExactParams, list_origin), FIELD(ExactParams, window),
             FIELD(ExactParams, fill_first), FIELD(ExactParams, fill_row), FIELD(ExactParams, pad7)};
+}
+
+Offsets delta_fields() {
+    return {FIELD(DeltaParams, origin), FIELD(DeltaParams, extent), FIELD(DeltaParams, border),
+            FIELD(DeltaParams, tiles), FIELD(DeltaParams, parent_tiles), FIELD(DeltaParams, list_origin),
+            FIELD(DeltaParams, tile_px), FIELD(DeltaParams, parent_ratio), FIELD(DeltaParams, lights),
+            FIELD(DeltaParams, first_light), FIELD(DeltaParams, end_light), FIELD(DeltaParams, capacity),
+            FIELD(DeltaParams, first_row), FIELD(DeltaParams, jobs), FIELD(DeltaParams, root_counts),
+            FIELD(DeltaParams, adds), FIELD(DeltaParams, least_distance), FIELD(DeltaParams, pad0),
+            FIELD(DeltaParams, pad1)};
 }
 
 Offsets compose_fields() {
@@ -131,6 +142,10 @@ std::vector<Layout> layouts() {
         {"exact_jobs.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
         {"exact_mean.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
         {"exact_fill.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
+        {"exact_reflect.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
+        {"delta_lists.comp", sizeof(glsl::DeltaParams), delta_fields(), glsl::kDeltaGroupX, glsl::kDeltaGroupY},
+        {"delta.comp", sizeof(glsl::DeltaParams), delta_fields(), glsl::kDeltaGroupX, glsl::kDeltaGroupY},
+        {"delta_nodes.comp", sizeof(glsl::DeltaParams), delta_fields(), glsl::kDeltaGroupX, glsl::kDeltaGroupY},
         {"hrc_low.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
         {"hrc_low_half.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
         {"hrc_trace.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},

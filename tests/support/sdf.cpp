@@ -113,7 +113,8 @@ FieldValue exact_field(const std::vector<Shape>& shapes, Point p, double far) {
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const double d = exact_distance(shapes[i], p);
         if (d <= 0) topmost = static_cast<int>(i);
-        if (d < result.distance) result = {d, static_cast<int>(i)};
+        // The later of two whose outlines coincide lies on top.
+        if (d <= result.distance) result = {d, static_cast<int>(i)};
     }
     if (topmost >= 0) result.shape = topmost;
     return result;
