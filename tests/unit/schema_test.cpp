@@ -160,7 +160,8 @@ TEST(Schema, ValuesHaveTheParsersWords) {
 
     const auto types_of = [](const char* list) {
         Words types;
-        for (const json& entry : at(list).at("oneOf")) {
+        const json shapes_or_lights = at(list).at("oneOf");
+        for (const json& entry : shapes_or_lights) {
             types.insert(at(entry.at("$ref").get<std::string>().substr(1))
                              .at("properties")
                              .at("type")
