@@ -53,7 +53,8 @@ struct LevelPoints {
 // What the steps of one frame share.
 struct ExactPass::Band {
     glsl::ExactParams params{};
-    gl::BufferTexture root_entries, root_lights, sectors, sky;
+    gl::BufferTexture root_entries, root_lights, sectors;
+    std::array<gl::BufferTexture, 3> sky;  // by moment
     gl::BufferTexture surfaces, materials;
     gl::Texture2D value, slope_x, slope_y, state, leaf, lights;
     glm::ivec2 coarse_tiles{0};
@@ -93,7 +94,8 @@ gl::ComputeProgram& ExactPass::solver_for(const Needs& needs) {
                                            {"kSky", needs.sky},
                                            {"kSlopes", needs.slopes ? 1 : 0},
                                            {"kSurfaces", needs.surfaces ? 1 : 0},
-                                           {"kNodes", needs.nodes ? 1 : 0}};
+                                           {"kNodes", needs.nodes ? 1 : 0},
+                                           {"kMoment", needs.moment}};
     return solvers_.emplace(needs, gl::ComputeProgram("exact_solve.comp", sizeof(glsl::ExactParams), shader_dir_, constants)).first->second;
 }
 
@@ -163,14 +165,14 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
     return work;
 }
 
-PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& band, int level) {
+PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& band, int level, int moment) {
     PassWork work;
     glsl::ExactParams params = band.params;
     params.level = level;
     band.levels[static_cast<std::size_t>(level)].write_to(params);
     const PackedOutline& outline = plan.exact.outline;
     gl::ComputeProgram& program =
-        solver_for({outline.counts[2] > 0, outline.counts[3] > 0, params.sky_kind, level < kLevels - 1, plan.exact.bounces > 0, false});
+        solver_for({outline.counts[2] > 0, outline.counts[3] > 0, params.sky_kind, level < kLevels - 1, plan.exact.surfaces, false, moment});
     const int tiles = params.tiles.x * params.tiles.y;
     params.extent = {tiles, 1};
     jobs_.bind_storage(glsl::kExactPointsStorage);
@@ -181,21 +183,21 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
     band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_WRITE);
     field.distance.bind_texture(glsl::kExactDistanceUnit);
     points_.bind_texture(glsl::kExactPointsUnit);
-    run_solver(params, band, work, [&](const glsl::ExactParams& p) {
+    run_solver(params, band, work, moment, [&](const glsl::ExactParams& p) {
         program.dispatch_indirect(p, 4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1));
     });
     return work;
 }
 
 // Dispatches until every point is done: one whose loops have spent their iterations goes on in the next.
-void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work,
+void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work, int moment,
                            const std::function<void(const glsl::ExactParams&)>& dispatch) {
     heads_.bind_texture(glsl::kExactHeadsUnit);
     entries_.bind_texture(glsl::kExactEntriesUnit);
     lights_.bind_texture(glsl::kExactLightsUnit);
     jobs_.bind_texture(glsl::kExactJobsUnit);
     band.sectors.bind_texture(glsl::kExactSectorsUnit);
-    band.sky.bind_texture(glsl::kExactSkyUnit);
+    band.sky[static_cast<std::size_t>(moment)].bind_texture(glsl::kExactSkyUnit);
     if (band.surfaces) {
         band.surfaces.bind_texture(glsl::kExactSurfacesUnit);
         elements_.bind_texture(glsl::kExactElementsUnit);
@@ -263,7 +265,7 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass
         SurfaceJobs jobs;
     };
     std::vector<Part> parts;
-    for (int row = 0; row < domain.y; row += exact.band_rows) {
+    for (int row = 0; exact.bounces > 0 && row < domain.y; row += exact.band_rows) {
         Part part;
         part.origin = origin + glm::ivec2(0, row);
         part.area = {domain.x, std::min(exact.band_rows, domain.y - row)};
@@ -277,9 +279,9 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass
         if (!part.jobs.tiles.empty()) parts.push_back(std::move(part));
     }
     const PackedOutline& outline = exact.outline;
-    gl::ComputeProgram& program =
-        solver_for({outline.counts[2] > 0, outline.counts[3] > 0, band.params.sky_kind, false, true, true});
     for (int i = 0; i < exact.bounces; ++i) {
+        gl::ComputeProgram& program =
+            solver_for({outline.counts[2] > 0, outline.counts[3] > 0, band.params.sky_kind, false, true, true, 0});
         for (const Part& part : parts) {
             band.area = part.area;
             band.params.tiles = part.tiles;
@@ -305,7 +307,7 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass
                 glsl::ExactParams params = band.params;
                 params.jobs = jobs;
                 params.extent = {params.jobs, 1};
-                run_solver(params, band, work, [&](const glsl::ExactParams& p) { program.dispatch(p, p.extent); });
+                run_solver(params, band, work, 0, [&](const glsl::ExactParams& p) { program.dispatch(p, p.extent); });
                 std::uint32_t spent = 0;
                 counters_.read(4 * glsl::kExactCountSpent, &spent, sizeof(spent));
                 if (spent != 0)
@@ -330,18 +332,22 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass
 }
 
 void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings,
-                    DeltaPass& delta, const Record& record, gl::Texture2D& out) {
+                    DeltaPass& delta, const Record& record, Light& out) {
     const ExactPlan& exact = plan.exact;
     const PackedOutline& outline = exact.outline;
     Band band;
     band.root_entries = gl::BufferTexture(GL_RGBA32F, outline.entries.data(), outline.entries.size() * 16);
     band.root_lights = gl::BufferTexture(GL_RGBA32F, outline.lights_of.data(), outline.lights_of.size() * 16);
     band.sectors = sector_table(exact);
-    const std::vector<glm::vec4> nodes =
-        exact.sky_nodes > 0 ? sky_nodes(sky, exact.sky_nodes, plan.radiance_scale) : std::vector<glm::vec4>();
-    band.sky = gl::BufferTexture(GL_RGBA32F, nodes.data(), nodes.size() * 16);
+    const int moments = exact.moments ? 3 : 1;
+    for (int moment = 0; moment < moments; ++moment) {
+        const std::vector<glm::vec4> nodes =
+            exact.sky_nodes > 0 ? sky_nodes(sky, exact.sky_nodes, plan.radiance_scale, moment) : std::vector<glm::vec4>();
+        band.sky[static_cast<std::size_t>(moment)] = gl::BufferTexture(GL_RGBA32F, nodes.data(), nodes.size() * 16);
+    }
 
-    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.lit.size);
+    gl::Texture2D* const results[] = {&out.mean, &out.moment_x, &out.moment_y};
+    for (int i = 0; i < moments; ++i) *results[i] = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.lit.size);
     glsl::ExactParams& params = band.params;
     params.canvas = plan.canvas;
     params.border = plan.grid.border;
@@ -358,7 +364,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
     params.root_counts = {outline.counts[0], outline.counts[1], outline.counts[2], outline.counts[3]};
     params.root_lights = {outline.lights[0], outline.lights[1], outline.lights[2], outline.lights[3]};
 
-    if (exact.bounces > 0) bounce(plan, settings, delta, record, band);
+    if (exact.surfaces) bounce(plan, settings, delta, record, band);
     for (int row = 0; row < plan.canvas.y; row += exact.band_rows) {
         band.area = {plan.canvas.x, std::min(exact.band_rows, plan.canvas.y - row)};
         params.first_row = row;
@@ -439,16 +445,20 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             record(points_name(level + 1).c_str(), cells * 2, [&] { return solve(plan, field, band, level + 1); });
         }
         std::vector<std::uint32_t> counted(zero.size());
-        record("exact fill", {plan.lit.size.x, end_lit - first_lit}, [&] {
+        const auto fill = [&](int moment) {
             PassWork work;
             band.value.bind_image(glsl::kExactValueImage, GL_READ_ONLY);
             band.slope_x.bind_image(glsl::kExactSlopeXImage, GL_READ_ONLY);
             band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_ONLY);
             band.leaf.bind_image(glsl::kExactLeafImage, GL_READ_ONLY);
-            out.bind_image(glsl::kExactRadianceImage, GL_WRITE_ONLY);
+            results[moment]->bind_image(glsl::kExactRadianceImage, GL_WRITE_ONLY);
             glsl::ExactParams p = params;
             p.extent = {plan.lit.size.x, end_lit - first_lit};
-            work.dispatches = fill_.dispatch(p, p.extent, settings.pixels);
+            work.dispatches = fill_.of({{"kSigned", moment > 0 ? 1 : 0}}).dispatch(p, p.extent, settings.pixels);
+            return work;
+        };
+        record("exact fill", {plan.lit.size.x, end_lit - first_lit}, [&] {
+            PassWork work = fill(0);
             counters_.read(0, counted.data(), counted.size() * 4);
             work.points = std::accumulate(counted.begin() + glsl::kExactCountTiles, counted.end(), std::size_t(0));
             return work;
@@ -456,6 +466,16 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         if (counted[glsl::kExactCountSpent] != 0)
             throw TooDense("The scene is too dense for the method 'exact' on this device: at " +
                            std::to_string(counted[glsl::kExactCountSpent]) + " points its loops ran out of iterations.");
+        // Radiance times direction, at the same points and in the same cells: its edges are the same.
+        for (int moment = 1; moment < moments; ++moment) {
+            record("exact moments", {plan.lit.size.x, end_lit - first_lit}, [&] {
+                counters_.write(0, zero.data(), std::size_t(4) * glsl::kExactCountTiles);
+                PassWork work;
+                for (int level = 0; level < kLevels; ++level) work.dispatches += solve(plan, field, band, level, moment).dispatches;
+                work.dispatches += fill(moment).dispatches;
+                return work;
+            });
+        }
         settings.give(std::move(band.value));
         settings.give(std::move(band.slope_x));
         settings.give(std::move(band.slope_y));

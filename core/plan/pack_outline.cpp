@@ -111,7 +111,7 @@ private:
     bool same_light(int a, int b) const {
         if (a == kMixed || b == kMixed) return false;
         const auto& all = boundary_->materials();
-        return all[std::size_t(a)].emission == all[std::size_t(b)].emission;
+        return all[std::size_t(a)].emission == all[std::size_t(b)].emission && all[std::size_t(a)].slope == Colour(0) && all[std::size_t(b)].slope == Colour(0);
     }
     Key corner(Point p) const { return {at(p.x), at(p.y), 0}; }
     Key circle(const Piece& piece) const {
@@ -130,20 +130,23 @@ private:
 // Cuts the pieces of a scene that reflects into elements.
 class SurfaceMaker {
 public:
-    SurfaceMaker(const Scene& scene, const PixelFrame& frame, const reference::Boundary& boundary) : frame_(frame), boundary_(boundary) {
+    SurfaceMaker(const Scene& scene, const PixelFrame& frame, const reference::Boundary& boundary, bool reflecting)
+        : frame_(frame), boundary_(boundary), reflecting_(reflecting) {
         double length = 0;
         for (const Piece& piece : boundary.pieces())
-            if (boundary.material_of(piece).albedo != Colour(0)) length += course_of(piece).length;
+            if (reflecting && boundary.material_of(piece).albedo != Colour(0)) length += course_of(piece).length;
         size_ = std::max(element_size(scene.render.quality), 2 * length / kMostNodes);
     }
 
     void add(const Piece& piece, glm::vec4 ends, double radiance_scale) {
         const reference::Material& material = boundary_.material_of(piece);
         const SurfaceCourse course = course_of(piece);
-        const bool reflects = material.albedo != Colour(0);
+        const bool reflects = reflecting_ && material.albedo != Colour(0);
         const int count = reflects ? element_count(course, size_) : 1;
         made_.pieces.emplace_back(float(made_.elements), float(course.whole ? -count : count), float(course.start_angle), float(course.sweep));
-        made_.materials.emplace_back(glm::vec3(material.emission / radiance_scale), 0.0f);
+        const Colour start = material.slope == Colour(0) ? material.emission : material.emission_at(piece.a);
+        made_.materials.emplace_back(glm::vec3(start / radiance_scale), 0.0f);
+        made_.materials.emplace_back(glm::vec3(material.slope * reference::dot(piece.b - piece.a, material.axis) / radiance_scale), 0.0f);
         made_.materials.emplace_back(glm::vec3(0.5 * material.albedo), 0.0f);
         for (int i = 0; i < count && reflects; ++i) {
             const double u = 0.5 * (element_start(i, count, course.whole) + element_start(i + 1, count, course.whole));
@@ -191,6 +194,7 @@ private:
 
     const PixelFrame& frame_;
     const reference::Boundary& boundary_;
+    bool reflecting_ = false;
     double size_ = 1;
     Surfaces made_;
 };
@@ -200,7 +204,7 @@ constexpr int kSurvey = 6;
 
 double survey_intervals(const Scene& scene, const reference::Boundary& boundary) {
     std::vector<char> shining;
-    for (const Piece& piece : boundary.pieces()) shining.push_back(boundary.material_of(piece).emission != Colour(0));
+    for (const Piece& piece : boundary.pieces()) shining.push_back(boundary.material_of(piece).shines());
     const bool dark = reference::SkyIntegral(scene.sky).is_black();
     reference::Sweep sweep(boundary, dark ? &shining : nullptr);
     const ViewRect view = scene.canvas.view_or_default();
@@ -223,7 +227,7 @@ double survey_intervals(const Scene& scene, const reference::Boundary& boundary)
 double smallest_light(const reference::Boundary& boundary) {
     std::map<int, reference::Box> boxes;
     for (const Piece& piece : boundary.pieces()) {
-        if (boundary.material_of(piece).emission == Colour(0)) continue;
+        if (!boundary.material_of(piece).shines()) continue;
         const reference::Box box = piece.box();
         reference::Box& all = boxes[piece.body];
         all.add(box.low);
@@ -269,8 +273,10 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
     out.smallest_body = smallest_body(boundary) * scale;
     if (survey) out.mean_intervals = survey_intervals(scene, boundary);
     // Elements lie on what can be seen: nothing is taken whole that is not.
-    const WholeCircles whole = reflecting ? WholeCircles() : WholeCircles(boundary);
-    SurfaceMaker surfaces(scene, frame, boundary);
+    const bool in_parts = reflecting || std::any_of(boundary.pieces().begin(), boundary.pieces().end(),
+                                                    [&](const Piece& piece) { return boundary.material_of(piece).slope != Colour(0); });
+    const WholeCircles whole = in_parts ? WholeCircles() : WholeCircles(boundary);
+    SurfaceMaker surfaces(scene, frame, boundary, reflecting);
     // Kind by kind, what emits first.
     for (const Kind kind : {Kind::straight, Kind::disc, Kind::arc, Kind::ellipse}) {
         for (const bool emits : {true, false}) {
@@ -279,7 +285,7 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
                 const reference::Material& material = boundary.material_of(piece);
                 if (whole.is_part(i) && !whole.is_first(i)) continue;
                 const Kind own = whole.is_part(i) ? Kind::disc : kind_of(piece);
-                const bool shines = material.emission != Colour(0) || (reflecting && material.albedo != Colour(0));
+                const bool shines = material.shines() || (reflecting && material.albedo != Colour(0));
                 if (own != kind || shines != emits) continue;
                 const glm::vec4 ends(piece.is_full ? glm::vec2(0) : corners.at(piece.a),
                                      piece.is_full ? glm::vec2(0) : corners.at(piece.b));
@@ -302,7 +308,7 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
                 }
                 out.lights_of.resize(out.entries.size(), glm::vec4(glm::vec3(material.emission / radiance_scale),
                                                                    static_cast<float>(out.pieces)));
-                if (reflecting) surfaces.add(piece, ends, radiance_scale);
+                if (in_parts) surfaces.add(piece, ends, radiance_scale);
                 ++out.pieces;
                 ++out.counts[static_cast<std::size_t>(kind)];
                 if (emits) ++out.lights[static_cast<std::size_t>(kind)];
@@ -310,11 +316,11 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
         }
     }
     for (const int count : out.lights) out.emitting += static_cast<std::size_t>(count);
-    if (reflecting) out.surfaces = surfaces.take();
+    if (in_parts) out.surfaces = surfaces.take();
     return out;
 }
 
-std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scale) {
+std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scale, int moment) {
     const reference::SkyIntegral integral(sky);
     // Which of the sky's parts between its steps each direction lies in. A single step needs a second border, at angle 0, to
     // have two parts.
@@ -335,7 +341,8 @@ std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scal
     for (int i = 0; i <= nodes; ++i) {
         table.push_back(glm::vec4(glm::vec3(sum / radiance_scale), 0.0f));
         table.push_back(glm::vec4(glm::vec3(integral.radiance(i * step) / radiance_scale), part(360.0 * (i % nodes) / nodes)));
-        sum += integral.integral(i * step, step);
+        sum += moment == 0 ? integral.integral(i * step, step)
+                           : integral.cosine_integral(i * step, step, moment == 1 ? 0 : 0.5 * std::numbers::pi);
     }
     return table;
 }

@@ -82,6 +82,14 @@ struct ProgramNeeds {
     bool ellipses = true;
     bool outlines = true;  // polylines and polygons
     bool bitmaps = true;
+    bool gradients = true;  // of emission, along strokes
+};
+
+// A floor that is more than an albedo.
+struct FloorPlan {
+    bool used = false;
+    bool relief = false;  // it matters where light comes from
+    bool gloss = false;
 };
 
 struct Plan {
@@ -104,6 +112,7 @@ struct Plan {
     ExactPlan exact;                    // of the method `exact`
     HrcPlan hrc;                        // inactive unless this method runs
     DeltaPlan delta;                    // point, spot and directional lights
+    FloorPlan floor;
     bool resolve = false;               // false: cascade 0 already is the mean radiance per pixel
     bool half_floats = false;           // cascades in 16 bits, emission scaled to [0, 1]
     double radiance_scale = 1;          // emission is divided by this before it is packed

@@ -69,9 +69,7 @@ public:
     }
     void put(const Bitmap& shape) {
         const auto& [image, position, size, emission, above, albedo] = shape;
-        put_word(image != nullptr);
-        if (image) put(*image);
-        put_all(position, size, emission, above, albedo);
+        put_all(image, position, size, emission, above, albedo);
     }
     void put(const Texels& texels) {
         const auto& [width, height, rgba] = texels;
@@ -80,20 +78,36 @@ public:
         bytes_.append(reinterpret_cast<const char*>(rgba.data()), rgba.size());
     }
     void put(const Shape& shape) {
-        const auto& [geometry, emission, albedo] = shape;
-        put_all(geometry, emission, albedo);
+        const auto& [geometry, emission, albedo, gradient] = shape;
+        put_all(geometry, emission, albedo, gradient);
+    }
+    void put(const EmissionStop& stop) {
+        const auto& [at, emission] = stop;
+        put_all(at, emission);
+    }
+    void put(const std::shared_ptr<const Texels>& image) {
+        put_word(image != nullptr);
+        if (image) put(*image);
+    }
+    void put(const Gloss& gloss) {
+        const auto& [roughness, metallic, reflectance] = gloss;
+        put_all(roughness, metallic, reflectance);
+    }
+    void put(const FloorMaterial& material) {
+        const auto& [image, normals, tile, gloss] = material;
+        put_all(image, normals, tile, gloss);
     }
     void put(const PointLight& light) {
-        const auto& [position, intensity, radius] = light;
-        put_all(position, intensity, radius);
+        const auto& [position, intensity, radius, unit, height] = light;
+        put_all(position, intensity, radius, unit, height);
     }
     void put(const SpotLight& light) {
-        const auto& [position, direction, inner, outer, intensity] = light;
-        put_all(position, direction, inner, outer, intensity);
+        const auto& [position, direction, inner, outer, intensity, unit, height, tilt] = light;
+        put_all(position, direction, inner, outer, intensity, unit, height, tilt);
     }
     void put(const DirectionalLight& light) {
-        const auto& [direction, irradiance] = light;
-        put_all(direction, irradiance);
+        const auto& [direction, irradiance, elevation] = light;
+        put_all(direction, irradiance, elevation);
     }
     void put(const SkyStop& stop) {
         const auto& [angle, radiance] = stop;
@@ -112,11 +126,11 @@ public:
         put_all(x, y, w, h);
     }
     void put(const Canvas& canvas) {
-        const auto& [width, height, region, view, margin, floor] = canvas;
+        const auto& [width, height, region, view, margin, floor, material] = canvas;
         // What is left out is the same as what says the default.
         (void)region;
         (void)view;
-        put_all(width, height, canvas.region_or_all(), canvas.view_or_default(), margin, floor);
+        put_all(width, height, canvas.region_or_all(), canvas.view_or_default(), margin, floor, material);
     }
     void put(const RenderSettings& render) {
         const auto& [method, quality, bounces, converged, tolerance, skip, keep, view] = render;

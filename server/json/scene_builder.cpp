@@ -84,6 +84,35 @@ private:
         if (const NodeId floor_id = members.find("floor"); is_object(floor, floor_id)) {
             const Members floor_members(reader_, floor, floor_id, kFloorKeys, "a floor");
             floor_members.colour("albedo", canvas.floor_albedo);
+            read_floor_material(floor, floor_members, canvas.floor);
+        }
+    }
+
+    void read_floor_material(const Path& where, const Members& members, FloorMaterial& floor) {
+        if (const NodeId image = members.find("image"); image != kNoNode) {
+            floor.image = bitmaps_.read(where.key("image"), image);
+        }
+        if (const NodeId normals = members.find("normal_map"); normals != kNoNode) {
+            floor.normals = bitmaps_.read(where.key("normal_map"), normals);
+        }
+        if (const NodeId tile = members.find("tile"); tile != kNoNode) {
+            const auto t = reader_.numbers(where.key("tile"), tile, 4,
+                                           "a rectangle of four numbers [x, y, width, height]");
+            floor.tile = ViewRect{t[0], t[1], t[2], t[3]};
+            if (members.find("image") == kNoNode && members.find("normal_map") == kNoNode) {
+                refuse(members, where, "tile", "is for a floor with an image or a normal_map");
+            }
+        }
+        for (const auto& [key, member] : {std::pair{"roughness", &Gloss::roughness},
+                                          std::pair{"metallic", &Gloss::metallic},
+                                          std::pair{"reflectance", &Gloss::reflectance}}) {
+            if (members.find(key) == kNoNode) {
+                continue;
+            }
+            if (!floor.gloss) {
+                floor.gloss = Gloss{};
+            }
+            members.number(key, (*floor.gloss).*member);
         }
     }
 
@@ -237,6 +266,39 @@ private:
         members.colour("albedo", shape.albedo);
     }
 
+    // As read_material, but emission may be a gradient along the stroke.
+    void read_stroke_material(const Path& where, const Members& members, Shape& shape) {
+        const NodeId id = members.find("emission");
+        if (id == kNoNode || reader_.node(id).kind != NodeKind::object ||
+            reader_.tree().child(id, "gradient") == kNoNode) {
+            read_material(members, shape);
+            return;
+        }
+        members.colour("albedo", shape.albedo);
+        const Path emission = where.key("emission");
+        const Members gradient(reader_, emission, id, kGradientKeys, "a gradient");
+        const NodeId list = gradient.find("gradient");
+        const Path stops = emission.key("gradient");
+        if (!reader_.expect(stops, list, NodeKind::array, "a list of stops")) {
+            return;
+        }
+        if (reader_.node(list).child_count == 0) {
+            reader_.report(stops, list, "too_few",
+                           [] { return "must hold at least 1 stop, holds 0"; });
+        }
+        for (NodeId stop = reader_.node(list).first_child; stop != kNoNode;
+             stop = reader_.node(stop).next_sibling) {
+            const Path here = stops.index(shape.gradient.size());
+            EmissionStop read{kUnread, Colour(kUnread)};
+            if (is_object(here, stop)) {
+                const Members keys(reader_, here, stop, kEmissionStopKeys, "a stop of a gradient");
+                keys.need_number("at", read.at);
+                keys.need_colour("emission", read.emission);
+            }
+            shape.gradient.push_back(read);
+        }
+    }
+
     Circle read_circle(const Path& where, NodeId id, Shape& shape) {
         const Members members(reader_, where, id, kCircleKeys, "a circle");
         Circle circle;
@@ -273,7 +335,7 @@ private:
         members.need_pair("from", "a point [x, y]", line.from);
         members.need_pair("to", "a point [x, y]", line.to);
         members.number("width", line.width);
-        read_material(members, shape);
+        read_stroke_material(where, members, shape);
         return line;
     }
 
@@ -283,7 +345,7 @@ private:
         members.need_points("points", polyline.points);
         members.number("width", polyline.width);
         members.boolean("closed", polyline.closed);
-        read_material(members, shape);
+        read_stroke_material(where, members, shape);
         return polyline;
     }
 
@@ -329,8 +391,9 @@ private:
             const Members members(reader_, where, id, kPointLightKeys, "a point light");
             PointLight light;
             members.need_pair("position", "a point [x, y]", light.position);
-            members.need_colour("intensity", light.intensity);
+            light.unit = read_strength(members, where, light.intensity, light.height);
             members.number("radius", light.radius);
+            only_for_radiant(members, where, "radius", light.unit);
             return light;
         }
         if (*type == 1) {
@@ -340,14 +403,58 @@ private:
             members.need_number("direction", light.direction_deg);
             members.need_number("inner_angle", light.inner_angle_deg);
             members.need_number("outer_angle", light.outer_angle_deg);
-            members.need_colour("intensity", light.intensity);
+            light.unit = read_strength(members, where, light.intensity, light.height);
+            members.number("tilt", light.tilt_deg);
+            if (light.unit == LightUnit::radiant) {
+                refuse(members, where, "tilt", "is for a spot in candela or lumens, at a height");
+            }
             return light;
         }
         const Members members(reader_, where, id, kDirectionalKeys, "a directional light");
         DirectionalLight light;
         members.need_number("direction", light.direction_deg);
-        members.need_colour("irradiance", light.irradiance);
+        if (members.find("lux") == kNoNode) {
+            members.need_colour("irradiance", light.irradiance);
+            refuse(members, where, "elevation", "is for a light in lux, of the world above the canvas");
+            return light;
+        }
+        members.need_colour("lux", light.irradiance);
+        refuse(members, where, "irradiance", "must not stand together with \"lux\": keep one");
+        light.elevation_deg = kUnread;
+        members.need_number("elevation", *light.elevation_deg);
         return light;
+    }
+
+    // A key that may not stand where it does.
+    void refuse(const Members& members, const Path& where, std::string_view key, std::string_view message) {
+        if (const NodeId id = members.find(key); id != kNoNode) {
+            reader_.report(where.key(key), id, "conflict", [&] { return std::string(message); });
+        }
+    }
+
+    void only_for_radiant(const Members& members, const Path& where, std::string_view key, LightUnit unit) {
+        if (unit != LightUnit::radiant) {
+            refuse(members, where, key, "is for a light with an \"intensity\", not for one in candela or lumens");
+        }
+    }
+
+    // One of intensity, candela and lumens; the latter two with a height.
+    LightUnit read_strength(const Members& members, const Path& where, Colour& intensity, double& height) {
+        const bool candela = members.find("candela") != kNoNode;
+        if (!candela && members.find("lumens") == kNoNode) {
+            members.need_colour("intensity", intensity);
+            refuse(members, where, "height", "is for a light in candela or lumens");
+            return LightUnit::radiant;
+        }
+        const std::string unit = candela ? "candela" : "lumens";
+        members.need_colour(unit, intensity);
+        const std::string together = "must not stand together with \"" + unit + "\": keep one";
+        refuse(members, where, "intensity", together);
+        if (candela) {
+            refuse(members, where, "lumens", together);
+        }
+        members.need_number("height", height);
+        return candela ? LightUnit::candela : LightUnit::lumens;
     }
 
     std::optional<std::size_t> read_choice(const Members& members, const Path& where,
