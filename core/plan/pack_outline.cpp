@@ -142,7 +142,9 @@ public:
         const reference::Material& material = boundary_.material_of(piece);
         const SurfaceCourse course = course_of(piece);
         const bool reflects = reflecting_ && material.albedo != Colour(0);
-        const int count = reflects ? element_count(course, size_) : 1;
+        // Rays of other methods find light that bounced, and with it all emission, by element.
+        const bool cut = reflects || (reflecting_ && material.slope != Colour(0));
+        const int count = cut ? element_count(course, size_) : 1;
         made_.pieces.emplace_back(float(made_.elements), float(course.whole ? -count : count), float(course.start_angle), float(course.sweep));
         const Colour start = material.slope == Colour(0) ? material.emission : material.emission_at(piece.a);
         made_.materials.emplace_back(glm::vec3(start / radiance_scale), 0.0f);
@@ -162,6 +164,16 @@ public:
                 return frame_.point(piece.at(piece.t0 + element_start(element, count, course.whole) * (piece.t1 - piece.t0)));
             };
             made_.nodes.push_back({glm::vec4(glm::vec2(place), glm::vec2(normal)), glm::vec2(end_of(i + 1) - end_of(i)), static_cast<std::uint32_t>(made_.elements) + static_cast<std::uint32_t>(i)});
+        }
+        const int chords = cut ? count : element_count(course, size_);
+        for (int i = 0; i < chords; ++i) {
+            const auto end_of = [&](int element) {
+                const double u = element_start(element, chords, course.whole);
+                if (!piece.is_arc) return glm::dvec2(ends.x, ends.y) * (1 - u) + glm::dvec2(ends.z, ends.w) * u;
+                return frame_.point(piece.at(piece.t0 + u * (piece.t1 - piece.t0)));
+            };
+            made_.chords.push_back({glm::vec4(glm::vec2(end_of(i)), glm::vec2(end_of(i + 1))),
+                                    static_cast<std::uint32_t>(made_.elements) + static_cast<std::uint32_t>(cut ? i : 0)});
         }
         made_.elements += static_cast<std::size_t>(count) + 1;
     }

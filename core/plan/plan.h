@@ -83,6 +83,7 @@ struct ProgramNeeds {
     bool outlines = true;  // polylines and polygons
     bool bitmaps = true;
     bool gradients = true;  // of emission, along strokes
+    bool surfaces = false;  // that shine with light that bounced, as sampled rays meet them
 };
 
 // A floor that is more than an albedo.
@@ -109,7 +110,7 @@ struct Plan {
     std::vector<CascadePlan> cascades;  // [0] is the nearest; empty when no light can arrive
     bool bilinear_fix = false;          // the cascades are those of `rc_fix`
     ReferencePlan reference;
-    ExactPlan exact;                    // of the method `exact`
+    ExactPlan exact;                    // of the method `exact`; of others, what surfaces shine with is found by it
     HrcPlan hrc;                        // inactive unless this method runs
     DeltaPlan delta;                    // point, spot and directional lights
     FloorPlan floor;
