@@ -30,7 +30,7 @@ vec4 weight_of(vec4 a, vec4 b) {
     vec4 ahead = ia + ib, aside = a * ia + b * ib;
     float along = kMoment == 1 ? axis.x : axis.y;
     float across = kMoment == 1 ? side.x : side.y;
-    return chord * (along * ahead + across * aside) * inversesqrt(ahead * ahead + aside * aside);
+    return chord * (along * ahead + across * aside) * inversesqrt(max(ahead * ahead + aside * aside, vec4(1e-30)));
 }
 
 int kind_of(float entry) { return entry < float(first_disc) ? 0 : entry < float(first_arc) ? 1 : entry < float(first_ellipse) ? 2 : 3; }

@@ -261,8 +261,17 @@ private:
         return shape;
     }
 
-    static void read_material(const Members& members, Shape& shape) {
-        members.colour("emission", shape.emission);
+    void read_material(const Path& where, const Members& members, Shape& shape) {
+        const NodeId emission = members.find("emission");
+        const NodeId gradient = emission != kNoNode && reader_.node(emission).kind == NodeKind::object
+                                    ? reader_.tree().child(emission, "gradient")
+                                    : kNoNode;
+        if (gradient == kNoNode) {
+            members.colour("emission", shape.emission);
+        } else {
+            reader_.report(where.key("emission").key("gradient"), gradient, "conflict",
+                           [] { return "is for lines and polylines"; });
+        }
         members.colour("albedo", shape.albedo);
     }
 
@@ -271,7 +280,7 @@ private:
         const NodeId id = members.find("emission");
         if (id == kNoNode || reader_.node(id).kind != NodeKind::object ||
             reader_.tree().child(id, "gradient") == kNoNode) {
-            read_material(members, shape);
+            read_material(where, members, shape);
             return;
         }
         members.colour("albedo", shape.albedo);
@@ -304,7 +313,7 @@ private:
         Circle circle;
         members.need_pair("center", "a point [x, y]", circle.center);
         members.need_number("radius", circle.radius);
-        read_material(members, shape);
+        read_material(where, members, shape);
         return circle;
     }
 
@@ -314,7 +323,7 @@ private:
         members.need_pair("center", "a point [x, y]", ellipse.center);
         members.need_pair("radii", "two radii [x, y]", ellipse.radii);
         members.number("rotation", ellipse.rotation_deg);
-        read_material(members, shape);
+        read_material(where, members, shape);
         return ellipse;
     }
 
@@ -325,7 +334,7 @@ private:
         members.need_pair("size", "a size [width, height]", rect.size);
         members.number("rotation", rect.rotation_deg);
         members.number("corner_radius", rect.corner_radius);
-        read_material(members, shape);
+        read_material(where, members, shape);
         return rect;
     }
 
@@ -353,7 +362,7 @@ private:
         const Members members(reader_, where, id, kPolygonKeys, "a polygon");
         Polygon polygon;
         members.need_points("points", polygon.points);
-        read_material(members, shape);
+        read_material(where, members, shape);
         return polygon;
     }
 

@@ -53,7 +53,7 @@ TEST(NormalForm, EveryValueShows) {
     differs("/canvas/margin", "2");
     differs("/canvas/floor", "{\"albedo\": 0.5}");
     const std::string picture = R"("data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==")";
-    for (const std::string floor : {R"("image": )" + picture, R"("normal_map": )" + picture, R"("tile": [0, 0, 8, 8], "image": )" + picture,
+    for (const std::string& floor : {R"("image": )" + picture, R"("normal_map": )" + picture, R"("tile": [0, 0, 8, 8], "image": )" + picture,
                                     std::string(R"("roughness": 0.4)"), std::string(R"("metallic": 0.4)"), std::string(R"("reflectance": 0.4)")})
         differs("/canvas/floor", "{" + floor + "}");
     differs("/shapes/3/emission", R"({"gradient": [{"at": 0.5, "emission": 1}]})");
