@@ -10,6 +10,7 @@
 #include <thread>
 #include <type_traits>
 
+#include "core/gl/checkpoint.h"
 #include "core/gl/context.h"
 #include "core/gl/loop_limit.h"
 #include "core/gl/settle.h"
@@ -331,9 +332,12 @@ Renderer::~Renderer() {
 
 const DeviceInfo& Renderer::device() const { return impl_->info; }
 
-RenderResult Renderer::render(const Scene& scene) {
+RenderResult Renderer::render(const Scene& scene, const StopCheck& stop) {
     impl_->check_thread();
     impl_->context.make_current();
+    const gl::CheckpointScope stopping([&] {
+        if (stop && stop()) throw RenderStopped();
+    });
     try {
         return impl_->render(scene);
     } catch (const TooDense& problem) {

@@ -1,149 +1,129 @@
 // SPDX-License-Identifier: MIT
 #include "core/scene/normal_form.h"
 
-#include <bit>
-#include <cstring>
-#include <type_traits>
+#include "core/scene/archive.h"
 
 namespace penumbra {
-namespace {
 
 // Every struct is taken apart whole: a member that is added to one makes its line here an error, instead of a picture that
 // is given for a scene it was not rendered from.
-class Writer {
-public:
-    void put(double value) { put_word(std::bit_cast<std::uint64_t>(value == 0 ? 0.0 : value)); }  // -0 is 0
-    void put(const std::string& text) {
-        put_word(text.size());
-        bytes_ += text;
-    }
-    template <class T>
-        requires(std::is_integral_v<T> || std::is_enum_v<T>)
-    void put(T value) {
-        put_word(std::uint64_t(std::int64_t(value)));
-    }
-    void put(const glm::dvec2& v) { put_all(v.x, v.y); }
-    void put(const glm::dvec3& v) { put_all(v.x, v.y, v.z); }
-    template <class T>
-    void put(const std::vector<T>& list) {
-        put_word(list.size());
-        for (const T& item : list) put(item);
-    }
-    template <class T>
-    void put(const std::optional<T>& value) {
-        put_word(value.has_value());
-        if (value) put(*value);
-    }
-    template <class... T>
-    void put(const std::variant<T...>& value) {
-        put_word(value.index());
-        std::visit([&](const auto& held) { put(held); }, value);
-    }
 
-    void put(const Circle& shape) {
-        const auto& [center, radius] = shape;
-        put_all(center, radius);
+template <class A>
+void fields(A& archive, Like<A, Circle>& shape) {
+    auto& [center, radius] = shape;
+    archive(center, radius);
+}
+template <class A>
+void fields(A& archive, Like<A, Ellipse>& shape) {
+    auto& [center, radii, rotation] = shape;
+    archive(center, radii, rotation);
+}
+template <class A>
+void fields(A& archive, Like<A, Rect>& shape) {
+    auto& [center, size, rotation, corner] = shape;
+    archive(center, size, rotation, corner);
+}
+template <class A>
+void fields(A& archive, Like<A, Line>& shape) {
+    auto& [from, to, width] = shape;
+    archive(from, to, width);
+}
+template <class A>
+void fields(A& archive, Like<A, Polyline>& shape) {
+    auto& [points, width, closed] = shape;
+    archive(points, width, closed);
+}
+template <class A>
+void fields(A& archive, Like<A, Polygon>& shape) {
+    auto& [points] = shape;
+    archive(points);
+}
+template <class A>
+void fields(A& archive, Like<A, Texels>& texels) {
+    auto& [width, height, rgba] = texels;
+    archive(width, height, rgba);
+}
+template <class A>
+void fields(A& archive, Like<A, Bitmap>& shape) {
+    auto& [image, position, size, emission, above, albedo] = shape;
+    archive(image, position, size, emission, above, albedo);
+}
+template <class A>
+void fields(A& archive, Like<A, Shape>& shape) {
+    auto& [geometry, emission, albedo] = shape;
+    archive(geometry, emission, albedo);
+}
+template <class A>
+void fields(A& archive, Like<A, PointLight>& light) {
+    auto& [position, intensity] = light;
+    archive(position, intensity);
+}
+template <class A>
+void fields(A& archive, Like<A, SpotLight>& light) {
+    auto& [position, direction, inner, outer, intensity] = light;
+    archive(position, direction, inner, outer, intensity);
+}
+template <class A>
+void fields(A& archive, Like<A, DirectionalLight>& light) {
+    auto& [direction, irradiance] = light;
+    archive(direction, irradiance);
+}
+template <class A>
+void fields(A& archive, Like<A, SkyStop>& stop) {
+    auto& [angle, radiance] = stop;
+    archive(angle, radiance);
+}
+template <class A>
+void fields(A& archive, Like<A, Sky>& sky) {
+    auto& [radiance, gradient] = sky;
+    archive(radiance, gradient);
+}
+template <class A>
+void fields(A& archive, Like<A, ViewRect>& view) {
+    auto& [x, y, w, h] = view;
+    archive(x, y, w, h);
+}
+template <class A>
+void fields(A& archive, Like<A, Canvas>& canvas) {
+    auto& [width, height, view, margin, floor] = canvas;
+    archive(width, height);
+    // One that is left out is the same as one that says the default.
+    if constexpr (A::kReads) {
+        archive(view.emplace());
+    } else {
+        archive(canvas.view_or_default());
+        (void)view;
     }
-    void put(const Ellipse& shape) {
-        const auto& [center, radii, rotation] = shape;
-        put_all(center, radii, rotation);
-    }
-    void put(const Rect& shape) {
-        const auto& [center, size, rotation, corner] = shape;
-        put_all(center, size, rotation, corner);
-    }
-    void put(const Line& shape) {
-        const auto& [from, to, width] = shape;
-        put_all(from, to, width);
-    }
-    void put(const Polyline& shape) {
-        const auto& [points, width, closed] = shape;
-        put_all(points, width, closed);
-    }
-    void put(const Polygon& shape) {
-        const auto& [points] = shape;
-        put(points);
-    }
-    void put(const Bitmap& shape) {
-        const auto& [image, position, size, emission, above, albedo] = shape;
-        put_word(image != nullptr);
-        if (image) put(*image);
-        put_all(position, size, emission, above, albedo);
-    }
-    void put(const Texels& texels) {
-        const auto& [width, height, rgba] = texels;
-        put_all(width, height);
-        put_word(rgba.size());
-        bytes_.append(reinterpret_cast<const char*>(rgba.data()), rgba.size());
-    }
-    void put(const Shape& shape) {
-        const auto& [geometry, emission, albedo] = shape;
-        put_all(geometry, emission, albedo);
-    }
-    void put(const PointLight& light) {
-        const auto& [position, intensity] = light;
-        put_all(position, intensity);
-    }
-    void put(const SpotLight& light) {
-        const auto& [position, direction, inner, outer, intensity] = light;
-        put_all(position, direction, inner, outer, intensity);
-    }
-    void put(const DirectionalLight& light) {
-        const auto& [direction, irradiance] = light;
-        put_all(direction, irradiance);
-    }
-    void put(const SkyStop& stop) {
-        const auto& [angle, radiance] = stop;
-        put_all(angle, radiance);
-    }
-    void put(const Sky& sky) {
-        const auto& [radiance, gradient] = sky;
-        put_all(radiance, gradient);
-    }
-    void put(const ViewRect& view) {
-        const auto& [x, y, w, h] = view;
-        put_all(x, y, w, h);
-    }
-    void put(const Canvas& canvas) {
-        const auto& [width, height, view, margin, floor] = canvas;
-        (void)view;  // one that is left out is the same as one that says the default
-        put_all(width, height, canvas.view_or_default(), margin, floor);
-    }
-    void put(const RenderSettings& render) {
-        const auto& [method, quality, bounces, skip, view] = render;
-        put_all(method, quality, bounces, skip, view);
-    }
-    void put(const OutputSettings& output) {
-        const auto& [format, depth, antialias, solids, exposure, tonemap] = output;
-        put_all(format, depth, antialias, solids, exposure, tonemap);
-    }
-    void put(const Scene& scene) {
-        const auto& [canvas, sky, shapes, lights, render, output] = scene;
-        put_all(canvas, sky, shapes, lights, render, output);
-    }
-
-    std::string take() { return std::move(bytes_); }
-
-private:
-    void put_word(std::uint64_t word) {
-        char bytes[sizeof word];
-        std::memcpy(bytes, &word, sizeof word);
-        bytes_.append(bytes, sizeof word);
-    }
-    template <class... T>
-    void put_all(const T&... values) {
-        (put(values), ...);
-    }
-
-    std::string bytes_;
-};
-
-}  // namespace
+    archive(margin, floor);
+}
+template <class A>
+void fields(A& archive, Like<A, RenderSettings>& render) {
+    auto& [method, quality, bounces, skip, view] = render;
+    archive(method, quality, bounces, skip, view);
+}
+template <class A>
+void fields(A& archive, Like<A, OutputSettings>& output) {
+    auto& [format, depth, antialias, solids, exposure, tonemap] = output;
+    archive(format, depth, antialias, solids, exposure, tonemap);
+}
+template <class A>
+void fields(A& archive, Like<A, Scene>& scene) {
+    auto& [canvas, sky, shapes, lights, render, output] = scene;
+    archive(canvas, sky, shapes, lights, render, output);
+}
 
 std::string normal_form(const Scene& scene) {
-    Writer writer;
-    writer.put(scene);
+    ByteWriter writer;
+    writer(scene);
     return writer.take();
+}
+
+std::optional<Scene> read_normal_form(std::string_view bytes) {
+    ByteReader reader(bytes);
+    Scene scene;
+    reader(scene);
+    if (!reader.at_end()) return std::nullopt;
+    return scene;
 }
 
 }  // namespace penumbra

@@ -5,11 +5,13 @@
 
 #include <netdb.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <thread>
 
@@ -50,6 +52,12 @@ std::vector<std::string> header_values(const Request& request, const char* name)
     const auto [begin, end] = request.headers.equal_range(name);
     for (auto it = begin; it != end; ++it) values.push_back(it->second);
     return values;
+}
+
+std::string short_number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
+    return text;
 }
 
 std::string joined(const std::vector<std::string>& values) {
@@ -282,6 +290,10 @@ struct HttpServer::Impl {
         const nlohmann::ordered_json json = {{"status", "ready"},
                                              {"version", version()},
                                              {"device", status.device.renderer},
+                                             {"workers", status.workers},
+                                             {"ready_workers", status.ready_workers},
+                                             {"lost", status.lost},
+                                             {"replaced", status.replaced},
                                              {"waiting", status.waiting},
                                              {"capacity", status.capacity},
                                              {"rendered", status.rendered},
@@ -376,6 +388,12 @@ struct HttpServer::Impl {
         wanted.text = body;
         wanted.formats = wishes;
         wanted.anew = has_directive(joined(header_values(request, "Cache-Control")), "no-cache");
+        const Exchange& exchange = GuardedServer::exchange();
+        const std::optional<double> wait = parse_wait(joined(header_values(request, "Prefer")));
+        const double seconds = std::min(wait.value_or(config.max_deadline_s), double(config.max_deadline_s));
+        wanted.deadline = exchange.start + std::chrono::milliseconds(std::int64_t(1000 * seconds));
+        wanted.gone = exchange.client_gone;
+        if (wait) response.set_header("Preference-Applied", "wait=" + short_number(seconds));
         const EntityTags tags = parse_entity_tags(joined(header_values(request, "If-None-Match")));
         if (!tags.empty()) wanted.client_has = [&](const std::string& tag) { return tags.has(tag); };
         send_picture(response, service.render(wanted), wanted.anew);

@@ -82,6 +82,12 @@ void GuardedStream::begin(Exchange& exchange) {
     line_end_ = 0;
 }
 
+bool GuardedStream::client_gone() const {
+    char byte = 0;
+    const ssize_t count = ::recv(socket_, &byte, 1, MSG_PEEK | MSG_DONTWAIT);
+    return count == 0 || (count < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR);
+}
+
 void GuardedStream::linger() {
     ::shutdown(socket_, SHUT_WR);
     const bool slow = exchange_->fault == Fault::timeout;
@@ -279,6 +285,7 @@ void GuardedServer::serve_connection(GuardedStream& stream) {
     while (stream.wait_for_request(give_up)) {
         fresh = false;
         Exchange exchange;
+        exchange.client_gone = [&stream] { return stream.client_gone(); };
         t_exchange = &exchange;
         stream.begin(exchange);
         const bool go_on = serve_request(stream, exchange, draining_);
