@@ -18,6 +18,7 @@ struct PassStats {
     std::uint64_t rays = 0;  // rays (intervals) traced
     std::uint64_t bytes = 0; // what it writes
     double cpu_ms = 0;     // processor time of all threads of the process meanwhile
+    std::uint64_t points = 0;  // solved by the method `exact`
 };
 
 struct SkippedWork {
@@ -34,6 +35,7 @@ struct RenderStats {
     int height = 0;
     double total_ms = 0;      // from the scene to the pixels
     std::uint64_t gpu_bytes = 0;
+    std::uint64_t lost_rays = 0;  // marches that ran out of steps: taken as blocked
     std::vector<PassStats> passes;
     std::vector<SkippedWork> skipped;
 };

@@ -2,31 +2,40 @@
 #include "core/renderer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <numbers>
 #include <optional>
 #include <thread>
 #include <type_traits>
 
+#include "core/film/exposure.h"
 #include "core/gl/checkpoint.h"
 #include "core/gl/context.h"
 #include "core/gl/loop_limit.h"
+#include "core/gl/storage_buffer.h"
 #include "core/gl/settle.h"
 #include "core/gl/timer.h"
 #include "core/passes/cascade_pass.h"
 #include "core/passes/compose_pass.h"
+#include "core/passes/delta_pass.h"
 #include "core/passes/distance_pass.h"
 #include "core/passes/exact_pass.h"
 #include "core/passes/hrc_pass.h"
 #include "core/passes/jump_flood_pass.h"
 #include "core/passes/rc_fix_pass.h"
+#include "core/passes/recorder.h"
+#include "core/passes/lit_solids.h"
 #include "core/passes/reference_pass.h"
 #include "core/passes/resolve_pass.h"
 #include "core/passes/scene_buffers.h"
 #include "core/plan/plan.h"
 #include "core/plan/shape_lists.h"
+#include "core/plan/skip.h"
+#include "core/scene/lower.h"
+#include "core/scene/words.h"
+#include "core/views/views.h"
+#include "glsl/cascade.h"
+#include "glsl/distance.h"
 
 namespace penumbra {
 namespace {
@@ -34,95 +43,32 @@ namespace {
 // Two renders of 4096 x 4096.
 constexpr std::size_t kPoolBytes = std::size_t(1) << 30;
 
-using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-// Processor time of all threads of this process.
-double cpu_ms_now() {
-    timespec time{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return 1e3 * double(time.tv_sec) + 1e-6 * double(time.tv_nsec);
-}
-
-// Records each pass's time and size while the frame runs. Bands of one pass add up in one record.
-class Recorder {
-public:
-    explicit Recorder(gl::PassTimer& timer) : timer_(timer) { timer_.reset(); }
-
-    template <class Run>
-    void pass(const std::string& name, glm::ivec2 extent, Run&& run) {
-        const Clock::time_point start = Clock::now();
-        const double cpu_start = cpu_ms_now();
-        timer_.mark();
-        const PassWork work = run();
-        timer_.mark();
-        gl::check_errors(name.c_str());
-        PassStats& stats = add(name, extent, ms_since(start), cpu_ms_now() - cpu_start);
-        stats.dispatches += static_cast<std::uint64_t>(work.dispatches);
-        stats.rays += work.rays;
-        stats.bytes += work.bytes;
-        marked_.push_back(static_cast<std::size_t>(&stats - passes_.data()));
-    }
-
-    template <class Run>
-    void host(const std::string& name, glm::ivec2 extent, Run&& run) {
-        const Clock::time_point start = Clock::now();
-        const double cpu_start = cpu_ms_now();
-        run();
-        add(name, extent, ms_since(start), cpu_ms_now() - cpu_start);
-    }
-
-    std::vector<PassStats> finish() {
-        const std::vector<double> device_ms = timer_.read();
-        for (std::size_t i = 0; i < marked_.size() && i < device_ms.size(); ++i) passes_[marked_[i]].gpu_ms += device_ms[i];
-        return std::move(passes_);
-    }
-
-private:
-    PassStats& add(const std::string& name, glm::ivec2 extent, double wall_ms, double cpu_ms) {
-        auto found = std::find_if(passes_.begin(), passes_.end(), [&](const PassStats& p) { return p.name == name; });
-        if (found == passes_.end()) {
-            passes_.emplace_back();
-            passes_.back().name = name;
-            passes_.back().width = extent.x;
-            found = passes_.end() - 1;
-        }
-        found->height += extent.y;
-        found->wall_ms += wall_ms;
-        found->cpu_ms += cpu_ms;
-        return *found;
-    }
-
-    gl::PassTimer& timer_;
-    std::vector<PassStats> passes_;
-    std::vector<std::size_t> marked_;  // the pass of each pair of marks
-};
+using Pixels = std::variant<Image8, Image16, ImageF>;
 
 // Collects the bands of the picture, without their alpha.
 class Reader {
 public:
-    Reader(glm::ivec2 canvas, bool linear) {
-        if (linear)
-            picture_ = ImageF(canvas.x, canvas.y, 3);
+    Reader(glm::ivec2 size, GLenum format) {
+        if (format == GL_RGBA32F)
+            picture_ = ImageF(size.x, size.y, 3);
+        else if (format == GL_RGBA16)
+            picture_ = Image16(size.x, size.y, 3);
         else
-            picture_ = Image8(canvas.x, canvas.y, 3);
+            picture_ = Image8(size.x, size.y, 3);
     }
 
     void read(const gl::Texture2D& band, int first_row) {
         std::visit([&](auto& picture) { read_into(picture, band, first_row); }, picture_);
     }
 
-    std::variant<Image8, ImageF> take() { return std::move(picture_); }
+    Pixels take() { return std::move(picture_); }
 
 private:
     template <class T>
     static void read_into(BasicImage<T>& picture, const gl::Texture2D& band, int first_row) {
         const glm::ivec2 size = band.size();
         BasicImage<T> rgba(size.x, size.y, 4);
-        band.read(GL_RGBA, std::is_same_v<T, float> ? GL_FLOAT : GL_UNSIGNED_BYTE, rgba.data.data());
+        band.read(GL_RGBA, kType<T>, rgba.data.data());
         const std::size_t count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
         const T* from = rgba.data.data();
         T* to = picture.at(0, first_row);
@@ -133,8 +79,22 @@ private:
         }
     }
 
-    std::variant<Image8, ImageF> picture_;
+    template <class T>
+    static constexpr GLenum kType = std::is_same_v<T, float> ? GL_FLOAT : sizeof(T) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE;
+
+    Pixels picture_;
 };
+
+// A picture of one pixel, as large as this.
+template <class T>
+BasicImage<T> filled(const BasicImage<T>& pixel, glm::ivec2 size) {
+    BasicImage<T> picture(size.x, size.y, pixel.channels);
+    if (std::all_of(pixel.data.begin(), pixel.data.end(), [](T value) { return value == T(0); })) return picture;
+    const std::size_t row = static_cast<std::size_t>(size.x) * pixel.data.size();
+    for (std::size_t i = 0; i < row; i += pixel.data.size()) std::copy(pixel.data.begin(), pixel.data.end(), picture.data.begin() + static_cast<std::ptrdiff_t>(i));
+    for (int y = 1; y < size.y; ++y) std::copy_n(picture.at(0, 0), row, picture.at(0, y));
+    return picture;
+}
 
 }  // namespace
 
@@ -150,7 +110,9 @@ struct Renderer::Impl {
           hrc(options.shader_dir),
           reference(options.shader_dir),
           exact(options.shader_dir),
+          delta(options.shader_dir),
           compose(options.shader_dir) {
+        if (options.tone_lut) compose.set_tone_lut(*options.tone_lut);
         const gl::ContextInfo& gl_info = context.info();
         info.kind = gl_info.software ? "cpu" : "gpu";
         info.platform = gl_info.platform;
@@ -173,6 +135,9 @@ struct Renderer::Impl {
     }
 
     RenderResult render(const Scene& scene, const std::string& not_exact = {});
+    Pixels constant_picture(const Plan& plan, const Scene& scene, GLenum format, Recorder& record);
+    Image8 draw_view(const Plan& plan, const Scene& scene, const DistanceField& field, const ShapeLists& lists);
+    double exposure_of(const Plan& plan, const Scene& scene, const FrameLight& light, Recorder& record);
     gl::Texture2D render_hrc(const Plan& plan, const DistanceField& field, Recorder& record);
     void check_thread() const {
         if (std::this_thread::get_id() != thread)
@@ -183,6 +148,7 @@ struct Renderer::Impl {
     gl::Context context;
     gl::SamplerSettler samplers;
     gl::PassTimer timer;
+    gl::StorageBuffer lost_rays{GL_R32UI, sizeof(std::uint32_t)};
     gl::TexturePool textures{kPoolBytes};
     DistancePass distance;
     JumpFloodPass jump_flood;
@@ -192,6 +158,7 @@ struct Renderer::Impl {
     HrcPass hrc;
     ReferencePass reference;
     ExactPass exact;
+    DeltaPass delta;
     ComposePass compose;
     DeviceInfo info;
     DeviceLimits limits;
@@ -234,28 +201,148 @@ gl::Texture2D Renderer::Impl::render_hrc(const Plan& plan, const DistanceField& 
 }
 // ---- end of hrc
 
+// One pixel as the device composes it, for all.
+Pixels Renderer::Impl::constant_picture(const Plan& plan, const Scene& scene, GLenum format, Recorder& record) {
+    gl::Texture2D pixel(format, {1, 1});
+    record.pass("compose", {1, 1}, [&] {
+        const glm::vec4 mean(glm::vec3(*plan.constant), 1.0f);
+        gl::Texture2D radiance(GL_RGBA32F, {1, 1});
+        radiance.fill(GL_RGBA, GL_FLOAT, &mean);
+        Scene open;  // no shape shows
+        open.canvas.floor_albedo = scene.canvas.floor_albedo;
+        open.output = scene.output;
+        const gl::Texture2D lights = black_texel();
+        const DistanceField field = DistancePass::empty_field(plan);
+        const FrameLight light{radiance, lights, field};
+        compose.set_lit(black_texel());
+        if (format == GL_RGBA32F) return compose.linear(plan, open, light, settings, plan.shown.first, pixel);
+        LogAverage average;
+        const double shown = luminance(*plan.constant * scene.canvas.floor_albedo);
+        average.add_to_mean(shown);
+        average.add(shown);
+        return compose.display(plan, open, exposure_factor(scene.output, average.value()), light, settings, plan.shown.first, pixel);
+    });
+    Reader reader({1, 1}, format);
+    record.host("read", {1, 1}, [&] { reader.read(pixel, 0); });
+    Pixels result;
+    record.host("fill", plan.shown.size, [&] {
+        result = std::visit([&](const auto& one) -> Pixels { return filled(one, plan.shown.size); }, reader.take());
+    });
+    return result;
+}
+
+// The factor before the tone curve. Automatic exposure looks at every free pixel of the canvas, row by row: the same scene gives the
+// same factor whatever the bands, and whatever part of it is shown.
+double Renderer::Impl::exposure_of(const Plan& plan, const Scene& scene, const FrameLight& light, Recorder& record) {
+    if (!scene.output.auto_key) return exposure_factor(scene.output);
+    std::vector<float> luminances;  // of free pixels
+    for (int row = 0; row < plan.canvas.y; row += plan.band_rows) {
+        const int rows = std::min(plan.band_rows, plan.canvas.y - row);
+        gl::Texture2D band = settings.take(GL_RGBA32F, {plan.canvas.x, rows});
+        record.pass("exposure", {plan.canvas.x, rows}, [&] { return compose.linear(plan, scene, light, settings, {0, row}, band); });
+        record.host("exposure read", {plan.canvas.x, rows}, [&] {
+            ImageF rgba(plan.canvas.x, rows, 4);
+            band.read(GL_RGBA, GL_FLOAT, rgba.data.data());
+            for (std::size_t i = 0; i < rgba.data.size(); i += 4) {
+                const float* pixel = &rgba.data[i];
+                if (pixel[3] > 0) luminances.push_back(static_cast<float>(luminance({pixel[0], pixel[1], pixel[2]})));
+            }
+        });
+        settings.give(std::move(band));
+    }
+    LogAverage average;
+    for (const float y : luminances) average.add_to_mean(double(y));
+    for (const float y : luminances) average.add(double(y));
+    return exposure_factor(scene.output, average.value());
+}
+
+// A look into the frame instead of its light: drawn on the host, of the part that is shown.
+Image8 Renderer::Impl::draw_view(const Plan& plan, const Scene& scene, const DistanceField& field, const ShapeLists& lists) {
+    ViewField seen{plan.shown.size, {}};
+    const glm::ivec2 border = plan.grid.border + plan.shown.first;
+    const bool empty = plan.shape_slices.empty();
+    std::vector<float> grid;
+    if (!empty) {
+        grid.resize(static_cast<std::size_t>(plan.grid.size.x) * static_cast<std::size_t>(plan.grid.size.y));
+        field.distance.read(GL_RED, GL_FLOAT, grid.data());
+    }
+    for (int y = 0; y < seen.size.y; ++y)
+        for (int x = 0; x < seen.size.x; ++x) {
+            const glm::ivec2 at = glm::ivec2(x, y) + border;
+            const auto i = static_cast<std::size_t>(at.y) * static_cast<std::size_t>(plan.grid.size.x) + static_cast<std::size_t>(at.x);
+            seen.distance.push_back(empty ? static_cast<float>(plan.grid.diagonal_px) : grid[i]);
+        }
+    if (scene.render.view == "distance") return draw_distance(seen);
+    if (scene.render.view == "normals") return draw_normals(seen);
+    // Without lists every tile asks every shape.
+    const int side = glsl::kDistanceTile;
+    glm::ivec2 tiles = lists.tiles;
+    std::vector<int> counts(lists.tile_count(), 0);
+    for (std::size_t i = 0; i < lists.ranges.size(); ++i) counts[i % counts.size()] += lists.ranges[i].y - lists.ranges[i].x;
+    if (tiles.x == 0) {
+        tiles = (plan.grid.size + side - 1) / side;
+        counts.assign(static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y), static_cast<int>(scene.shapes.size()));
+    }
+    return draw_tiles(seen, counts, tiles, border, side);
+}
+
 // The frame, in the order in which it happens.
-RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_exact) {
+RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_exact) {
     const Clock::time_point start = Clock::now();
-    const bool linear = scene.output.format != "png";
+    const bool linear = asked.output.format != "png";
+    const GLenum format = linear ? GL_RGBA32F : bit_depth_of("png", asked.output.bit_depth) == 16 ? GL_RGBA16 : GL_RGBA8;
+    RenderResult result;
+    RenderStats& stats = result.stats;
+    const std::optional<Scene> lean = without_unseen_shapes(asked, stats.skipped);
+    const Scene& scene = lean ? *lean : asked;
     const Plan plan = make_plan(scene, limits, not_exact);
+    stats.device = info.renderer;
+    stats.method = plan.method;
+    stats.method_reason = plan.method_reason;
+    stats.width = plan.shown.size.x;
+    stats.height = plan.shown.size.y;
+    stats.skipped.insert(stats.skipped.end(), plan.skipped.begin(), plan.skipped.end());
+    Recorder record(timer);
+    if (plan.constant) {
+        result.picture = constant_picture(plan, scene, format, record);
+        context.check_reset();
+        stats.passes = record.finish();
+        stats.total_ms = ms_since(start);
+        return result;
+    }
     const PackedScene packed = pack_scene(scene, plan.radiance_scale);
     samplers.settle();
     const SceneBuffers buffers(packed, scene.sky, plan);
     buffers.bind();
-    Recorder record(timer);
 
     ShapeLists lists;
-    if (plan.list_shapes) record.host("shape lists", plan.grid.size, [&] { lists = list_shapes(packed, plan.grid); });
+    if (plan.list_shapes) record.host("shape lists", plan.grid.size, [&] { lists = list_shapes(packed, plan.grid, plan.first_distance_row, plan.end_distance_row); });
 
     DistanceField field;
     if (plan.shape_slices.empty())
         field = DistancePass::empty_field(plan);
     else
-        record.pass("distance", plan.grid.size, [&] { return distance.run(plan, lists, settings, field); });
+        record.pass("distance", {plan.grid.size.x, plan.end_distance_row - plan.first_distance_row}, [&] { return distance.run(plan, lists, settings, field); });
     if (!plan.jump_steps.empty())
         record.pass("jump flood", plan.grid.size, [&] { return jump_flood.run(plan, settings, field); });
 
+    if (scene.render.view != "final") {
+        record.host("view", plan.shown.size, [&] { result.picture = draw_view(plan, scene, field, lists); });
+        context.check_reset();
+        settings.give(std::move(field.distance));
+        settings.give(std::move(field.material));
+        stats.passes = record.finish();
+        stats.gpu_bytes = plan.gpu_bytes + buffers.bytes();
+        stats.total_ms = ms_since(start);
+        return result;
+    }
+
+    const bool marches = !plan.cascades.empty() || plan.hrc.active();
+    if (marches) {
+        const std::uint32_t none = 0;
+        lost_rays.write(0, &none, sizeof(none));
+        lost_rays.bind_storage(glsl::kLostRaysStorage);
+    }
     gl::Texture2D radiance;
     for (std::size_t level = plan.cascades.size(); level-- > 0;) {
         gl::Texture2D merged;
@@ -268,35 +355,43 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
         radiance = std::move(merged);
     }
     if (plan.reference.rays > 0)
-        record.pass("reference", plan.canvas,
+        record.pass("reference", plan.lit.size,
                     [&] { return reference.run(plan, scene.sky, buffers, field, settings, radiance); });
     if (plan.exact.used)
-        exact.run(plan, scene.sky, field, settings,
+        exact.run(plan, scene.sky, field, settings, delta,
                   [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, radiance);
     if (plan.hrc.active()) radiance = render_hrc(plan, field, record);
     if (plan.resolve)
-        record.pass("resolve", plan.canvas, [&] {
+        record.pass("resolve", plan.lit.size, [&] {
             gl::Texture2D resolved;
             const PassWork work = resolve.run(plan, radiance, settings, resolved);
             settings.give(std::move(radiance));
             radiance = std::move(resolved);
             return work;
         });
-    if (!radiance) {
-        // No light at all: one black texel stands for every pixel.
-        const float black[4] = {};
-        radiance = gl::Texture2D(GL_RGBA32F, {1, 1});
-        radiance.fill(GL_RGBA, GL_FLOAT, black);
+    gl::Texture2D lights;
+    if (plan.delta.used()) record.pass("lights", plan.lit.size, [&] { return delta.pixels(plan, field, settings, lights); });
+    // Where there is no light one black texel stands for every pixel.
+    for (gl::Texture2D* texture : {&radiance, &lights}) {
+        if (!*texture) *texture = black_texel();
     }
+    const FrameLight light{radiance, lights, field};
+    if (scene.output.solids == Solids::lit)
+        record.host("lit solids", plan.canvas, [&] { compose.set_lit(lit_solids(plan, scene, light)); });
+    else
+        compose.set_lit(black_texel());
+    const double exposure = linear ? 1.0 : exposure_of(plan, scene, light, record);
 
-    RenderResult result;
-    Reader reader(plan.canvas, linear);
-    for (int row = 0; row < plan.canvas.y; row += plan.band_rows) {
-        const int rows = std::min(plan.band_rows, plan.canvas.y - row);
-        gl::Texture2D band = settings.take(linear ? GL_RGBA32F : GL_RGBA8, {plan.canvas.x, rows});
-        record.pass("compose", {plan.canvas.x, rows},
-                    [&] { return compose.run(plan, scene, linear, radiance, field, settings, row, band); });
-        record.host("read", {plan.canvas.x, rows}, [&] { reader.read(band, row); });
+    Reader reader(plan.shown.size, format);
+    for (int row = 0; row < plan.shown.size.y; row += plan.band_rows) {
+        const int rows = std::min(plan.band_rows, plan.shown.size.y - row);
+        gl::Texture2D band = settings.take(format, {plan.shown.size.x, rows});
+        const glm::ivec2 first = plan.shown.first + glm::ivec2(0, row);
+        record.pass("compose", {plan.shown.size.x, rows}, [&] {
+            return linear ? compose.linear(plan, scene, light, settings, first, band)
+                          : compose.display(plan, scene, exposure, light, settings, first, band);
+        });
+        record.host("read", {plan.shown.size.x, rows}, [&] { reader.read(band, row); });
         settings.give(std::move(band));
     }
     result.picture = reader.take();
@@ -304,16 +399,21 @@ RenderResult Renderer::Impl::render(const Scene& scene, const std::string& not_e
     settings.give(std::move(field.distance));
     settings.give(std::move(field.material));
     settings.give(std::move(radiance));
+    settings.give(std::move(lights));
 
-    RenderStats& stats = result.stats;
     stats.passes = record.finish();
-    stats.device = info.renderer;
-    stats.method = plan.method;
-    stats.method_reason = plan.method_reason;
-    stats.width = plan.canvas.x;
-    stats.height = plan.canvas.y;
     stats.gpu_bytes = plan.gpu_bytes + buffers.bytes();
-    stats.skipped = plan.skipped;
+    if (plan.exact.used && plan.exact.settings.largest_cell > 1) {
+        double points = 0;
+        for (const PassStats& pass : stats.passes) points += double(pass.points);
+        const double pixels = double(plan.lit.size.x) * plan.lit.size.y;
+        if (points < pixels) stats.skipped.push_back({"points", "the corners of a cell tell all of it", pixels - points});
+    }
+    if (marches) {
+        std::uint32_t lost = 0;
+        lost_rays.read(0, &lost, sizeof(lost));
+        stats.lost_rays = lost;
+    }
     if (lists.tiles.x > 0) stats.skipped.push_back(saved_by_lists(lists, packed, plan.grid));
     stats.total_ms = ms_since(start);
     return result;
@@ -332,7 +432,10 @@ Renderer::~Renderer() {
 
 const DeviceInfo& Renderer::device() const { return impl_->info; }
 
-RenderResult Renderer::render(const Scene& scene, const StopCheck& stop) {
+RenderResult Renderer::render(const Scene& given, const StopCheck& stop) {
+    Scene made;
+    if (needs_lowering(given)) made = lowered(given);
+    const Scene& scene = needs_lowering(given) ? made : given;
     impl_->check_thread();
     impl_->context.make_current();
     const gl::CheckpointScope stopping([&] {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/device_error.h"
+#include "core/film/tone_lut.h"
 #include "core/image/image.h"
 #include "core/plan/support.h"
 #include "core/render_stats.h"
@@ -20,6 +21,7 @@ namespace penumbra {
 struct RendererOptions {
     std::string device = "auto";  // "auto", "cpu", "gpu", or an index as `penumbra info` lists them
     std::string shader_dir;       // when set, shaders are read from here instead of the embedded ones
+    std::shared_ptr<const ToneLut> tone_lut{};  // of the tone map "tony"; without it, no scene may ask for that
 };
 
 struct DeviceInfo {
@@ -40,8 +42,8 @@ struct DeviceListing {
 };
 
 struct RenderResult {
-    // 8-bit sRGB for "png"; linear, three channels, for "pfm".
-    std::variant<Image8, ImageF> picture;
+    // sRGB of 8 or 16 bits for "png"; linear for all others; three channels.
+    std::variant<Image8, Image16, ImageF> picture;
     RenderStats stats;
 };
 
@@ -53,7 +55,7 @@ public:
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    // Precondition: validate(scene) and unsupported(scene) are empty. Throws DeviceError.
+    // Precondition: validate(scene) and unsupported(scene, features) are empty. Throws DeviceError.
     // Throws RenderStopped when `stop` says so.
     RenderResult render(const Scene& scene, const StopCheck& stop = {});
 

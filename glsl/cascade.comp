@@ -57,4 +57,5 @@ void main() {
         sum += radiance;
     }
     imageStore(cascade_image, texel, vec4(0.25 * sum, 1.0));
+    report_lost_rays();
 }

@@ -17,6 +17,7 @@ const int kCascadeUpperUnit = 6;     // rgba, linear filter, the cascade above
 // Mesa 22 ends every loop. A ray that finds them spent is blocked, never free (errata E-5).
 // It is half of that, because the eight invocations of a vector wait for each other's loops.
 const int kMarchBudget = 32000;
+const int kLostRaysStorage = 5;  // one uint: rays of the frame that ran out of steps
 // Outlines of more edges than this are not asked during a march; the distance is interpolated instead.
 const int kMostMarchedEdges = 24;
 

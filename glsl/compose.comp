@@ -6,8 +6,11 @@ layout(std140, binding = kComposeParamsBinding) uniform Params { ComposeParams p
 #include "lib/pixel.glsl"
 #include "lib/tonemap.glsl"
 
+// Which program this is: whether edges are mixed (2), solids show (1) or there are none (0). Its curve is kComposeTonemap.
+const int kEdges = 2;
+
 layout(local_size_x = kComposeGroupX, local_size_y = kComposeGroupY) in;
-layout(rgba8, binding = kComposeImageBinding) writeonly uniform image2D picture_image;
+layout(binding = kComposeImageBinding) writeonly uniform image2D picture_image;
 
 // The floor beside a solid edge pixel: the mean of its free neighbours. The pixel's own probe sits inside
 // the shape, and would leak its light or its dark into the edge.
@@ -23,20 +26,41 @@ vec3 floor_beside(ivec2 pixel) {
 }
 
 vec3 pixel_radiance(ivec2 pixel) {
-    if (params.has_shapes == 0) return floor_radiance(pixel);
+    if (kEdges == 0 || params.has_shapes == 0) return floor_radiance(pixel);
     float d = pixel_distance(pixel);
     bool solid = d <= 0.0;
+    if (kEdges == 1) return solid ? solid_radiance(pixel) : floor_radiance(pixel);
     float coverage = params.antialias != 0 ? clamp(0.5 - d, 0.0, 1.0) : (solid ? 1.0 : 0.0);
     if (coverage >= 1.0) return solid_radiance(pixel);
     vec3 free = solid ? floor_beside(pixel) : floor_radiance(pixel);
     return coverage <= 0.0 ? free : mix(free, solid_radiance(pixel), coverage);
 }
 
+// Rounds to codes with triangular noise that depends on the pixel only (pcg3d: Jarzynski and Olano, JCGT 2020); within half a code of
+// black and white with noise one code wide, which is never cut off. core/film/encode.h says why.
+vec3 dithered(vec3 value, ivec2 pixel, float levels) {
+    uvec3 v = uvec3(pixel, 0) * 1664525u + 1013904223u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v ^= v >> 16u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    vec3 first = vec3(v >> 16u) / 65536.0;
+    vec3 second = vec3(v & 0xffffu) / 65536.0;
+    vec3 scaled = value * levels;
+    vec3 inside = vec3(greaterThanEqual(scaled, vec3(0.5))) * vec3(lessThanEqual(scaled, vec3(levels - 0.5)));
+    return clamp(floor(scaled + first + inside * (0.5 - second)), 0.0, levels) / levels;
+}
+
 void main() {
     ivec2 texel = params.origin + ivec2(gl_GlobalInvocationID.xy);
-    ivec2 pixel = texel + ivec2(0, params.first_row);
-    if (pixel.x >= params.extent.x || pixel.y >= params.extent.y) return;
+    ivec2 size = imageSize(picture_image);
+    if (texel.x >= size.x || texel.y >= size.y) return;
+    ivec2 pixel = texel + params.first_pixel;
     vec3 radiance = max(pixel_radiance(pixel) * params.exposure, vec3(0.0));
-    vec3 encoded = srgb_encode(clamp(tonemap(radiance, params.tonemap, params.white), 0.0, 1.0));
+    vec3 encoded = srgb_encode(clamp(tonemap(radiance, params.white), 0.0, 1.0));
+    if (kComposeDither != 0) encoded = dithered(encoded, pixel, float(params.levels));
     imageStore(picture_image, texel, vec4(encoded, 1.0));
 }

@@ -30,8 +30,8 @@ void main() {
     for (int k = range.x; k < range.y; ++k) {
         int i = params.tiles > 0 ? texelFetch(tile_shapes, k).r : k;
         float d = shape_distance(i, p, nearest);
-        // Later shapes lie on top of earlier ones wherever both cover the point.
-        if (d <= 0.0 || d < nearest) material = i;
+        // Later shapes lie on top of earlier ones wherever both cover the point, and where their outlines coincide.
+        if (d <= 0.0 || d <= nearest) material = i;
         nearest = min(nearest, d);
     }
     imageStore(distance_image, pixel, vec4(nearest));

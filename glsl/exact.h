@@ -22,10 +22,13 @@ const int kExactHeadsUnit = 5;        // RGBA32UI: one list of each tile and sec
 const int kExactEntriesUnit = 6;      // RGBA32F: geometry of the pieces of the lists
 const int kExactLightsUnit = 7;       // RGBA32F: radiance of an entry's piece, and which piece it is
 const int kExactSectorsUnit = 9;      // RGBA32F: cos and sin of the sector's axis, its angle, unused
-const int kExactSkyUnit = 10;         // RGBA32F: two texels a node: sky integral from angle 0, sky radiance
+const int kExactSkyUnit = 10;         // RGBA32F: two texels a node: sky integral from angle 0, sky radiance and part
 const int kExactPointsUnit = 11;      // R32UI: x | y << 8 in the tile, tile by tile
 const int kExactValueUnit = 8;
-const int kExactJobsUnit = 12;        // R32UI: tile | four points of it << 24
+const int kExactJobsUnit = 12;        // R32UI: tile | four points of it << 24; of surfaces: tile
+const int kExactSurfacesUnit = 13;    // RGBA32F: a texel for each piece, see below
+const int kExactElementsUnit = 14;    // RGBA32F: kExactElementTexels for each element of each piece, and one element more
+const int kExactNodesUnit = 15;       // RGBA32F: where surfaces are solved, job by job
 
 // Images.
 const int kExactValueImage = 0;   // rgb mean radiance, a: signature of what is seen
@@ -63,6 +66,22 @@ const uint kExactOpen = 0xfffffffeu;
 const uint kExactDark = 0xffffffffu;
 const uint kExactTooLong = 0x7fffffffu;  // a list has more entries than its head can count
 
+// Surfaces that reflect (docs/methods/bounces.md). A piece is cut into elements along its course u from 0 to 1, which is the
+// way from a to b or the angle in its own frame. Its texel: first element, how many (negative: of equal size, around a whole
+// curve), angle where it starts, angle that it covers (0: straight).
+// An element's texels: integral of radiance from u = 0 to its start, u there | mean radiance, size in u |
+// change of radiance across it, unused.
+// A node's texels: place, outward normal | element, its extent as a vector, unused.
+// A material's texels: emission, first element | half the albedo, elements as above.
+const int kExactElementTexels = 3;
+const int kExactNodeRow = 1024;       // nodes in a row of the images that they are solved in
+// Units of the reflection, which needs no lists.
+const int kExactMaterialsUnit = 5;
+const int kExactNodeValuesUnit = 6;   // RGBA32F: irradiance by element
+const int kExactNodeLightsUnit = 7;  // RGBA32F: irradiance that lights without a size give, by element
+const int kExactElementsStorage = 0;
+const int kExactChangeStorage = 1;    // uints: most that an element changed by, most that one shines with, as bits of floats
+
 struct ExactParams {
     ivec2 origin;
     ivec2 extent;
@@ -87,7 +106,7 @@ struct ExactParams {
     int first_count;     // of the level, in the counters
     int capacity;        // texels of entries
     int continues;       // goes on where the dispatch before ended
-    int pad4a;
+    float light_scale;   // of what lights without a size give surfaces; 0: there are none
     float tolerance;     // of the interpolation, relative
     int kink_cell;       // cells larger than this are split where what is seen differs
     float floor_share;   // of the mean radiance, added to what the tolerance is relative to
@@ -98,9 +117,12 @@ struct ExactParams {
     ivec4 root_counts;   // of the one list of all pieces, by kind
     ivec4 root_lights;   // the emitting ones among them
     int wide;            // the lists are for making further lists: heads of two texels
-    int pad2;
-    int pad5;
-    int pad6;
+    int jobs;            // of surfaces
+    ivec2 list_origin;   // of the lists' first tile, px
+    ivec4 window;        // first and end of the tiles, of the band, whose pixels are asked for
+    ivec2 fill_first;    // first of those pixels, of the band
+    int fill_row;        // where their rows begin in the image
+    int pad7;
 };
 
 #ifdef __cplusplus

@@ -12,8 +12,9 @@ layout(binding = kExactLeafImage, r32ui) readonly uniform uimage2D leaf_image;
 layout(binding = kExactRadianceImage) writeonly uniform image2D radiance_image;
 
 void main() {
-    ivec2 at = params.origin + ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= params.extent.x || at.y >= params.extent.y) return;
+    ivec2 texel = params.origin + ivec2(gl_GlobalInvocationID.xy);
+    if (texel.x >= params.extent.x || texel.y >= params.extent.y) return;
+    ivec2 at = texel + params.fill_first;
     int h = kExactCell;
     if (int(imageLoad(leaf_image, at / 8 * 8).r) < 8) h = 4;
     if (h == 4 && int(imageLoad(leaf_image, at / 4 * 4).r) < 4) h = 2;
@@ -38,5 +39,5 @@ void main() {
         }
         sum = max(sum, vec3(0.0));
     }
-    imageStore(radiance_image, at + ivec2(0, params.first_row), vec4(sum, 1.0));
+    imageStore(radiance_image, texel + ivec2(0, params.fill_row), vec4(sum, 1.0));
 }

@@ -135,7 +135,7 @@ void main() {
 
     // The points of a tile are centres of pixels, the next column and row among them.
     half_tile = 0.5 * float(params.tile_px);
-    vec2 centre = vec2(at.x, row) * float(params.tile_px) + half_tile + 0.5 + vec2(0.0, params.first_row);
+    vec2 centre = vec2(at.x, row) * float(params.tile_px) + half_tile + 0.5 + vec2(params.list_origin);
     axis = texelFetch(sectors, sector).xy;
     vec2 side = vec2(-axis.y, axis.x) * params.tan_half;
     d0 = normalize(axis - side);
@@ -284,5 +284,5 @@ void main() {
     // Each step of the walk asks every entry; each entry starts and ends at most one interval.
     bool fits_head = params.wide != 0 ? all(lessThan(kept_lights, uvec4(65536u)))
                                       : kept.x < 65536u && kept.y < 65536u && kept.z < 256u && kept.w < 256u && total < 20000u;
-    atomicMax(counters[kExactCountWork], !fits_head ? kExactTooLong : params.wide != 0 ? 0u : (2u * total + 3u) * (total + 5u));
+    atomicMax(counters[kExactCountWork], !fits_head ? kExactTooLong : params.wide != 0 ? 0u : (2u * total + 3u) * (total + 13u));
 }

@@ -17,6 +17,9 @@ layout(binding = kExactSectorsUnit) uniform samplerBuffer sectors;
 layout(binding = kExactSkyUnit) uniform samplerBuffer sky_nodes;
 layout(binding = kExactPointsUnit) uniform usamplerBuffer points;
 layout(binding = kExactJobsUnit) uniform usamplerBuffer jobs;
+layout(binding = kExactSurfacesUnit) uniform samplerBuffer surfaces;
+layout(binding = kExactElementsUnit) uniform samplerBuffer elements;
+layout(binding = kExactNodesUnit) uniform samplerBuffer nodes;
 layout(binding = kExactValueImage, rgba32f) uniform image2D value_image;
 layout(binding = kExactSlopeXImage, rgba32f) uniform image2D slope_x_image;
 layout(binding = kExactSlopeYImage, rgba32f) uniform image2D slope_y_image;
@@ -27,6 +30,8 @@ const int kArcs = 1;      // lists hold arcs
 const int kEllipses = 1;  // and ellipses
 const int kSky = 2;       // 0: none, 1: constant, 2: nodes around the circle
 const int kSlopes = 1;    // slopes and signatures are asked for
+const int kSurfaces = 1;  // pieces shine differently from place to place: they reflect
+const int kNodes = 1;     // points are elements of surfaces, and what is asked for is their irradiance
 
 const float kLookAhead = 1e-4;  // pieces that start at one corner are told apart a little further on
 const float kTwoPi = 6.283185307179586;
@@ -37,6 +42,7 @@ const float kNone = -1.0;       // nothing in this direction: the sky
 const float kUnknown = -2.0;
 
 #include "lib/exact_span.glsl"
+#include "lib/exact_surface.glsl"
 
 // The walk's state in this sector. Every vector that a loop carries costs Mesa 22 a masked copy each time round: few.
 vec4 now;         // where it stands
@@ -108,29 +114,46 @@ vec3 sky_between(float a, float b, out vec3 at_b) {
     return end - begin;
 }
 
-void add_sky(bvec4 which, vec4 a, vec4 b, out vec4 r, out vec4 g, out vec4 bl) {
+// `weight`: what the integral counts for; 1 for the light of all directions alike.
+void add_sky(bvec4 which, vec4 a, vec4 b, vec4 weight, out vec4 r, out vec4 g, out vec4 bl) {
     vec3 h0, h1, h2, h3;
     vec3 s0 = sky_between(a.x, b.x, h0);
     vec3 s1 = sky_between(a.y, b.y, h1);
     vec3 s2 = sky_between(a.z, b.z, h2);
     vec3 s3 = sky_between(a.w, b.w, h3);
-    sum_r += pick(vec4(0.0), vec4(s0.r, s1.r, s2.r, s3.r), which);
-    sum_g += pick(vec4(0.0), vec4(s0.g, s1.g, s2.g, s3.g), which);
-    sum_b += pick(vec4(0.0), vec4(s0.b, s1.b, s2.b, s3.b), which);
+    vec4 share = pick(vec4(0.0), weight, which);
+    sum_r += share * vec4(s0.r, s1.r, s2.r, s3.r);
+    sum_g += share * vec4(s0.g, s1.g, s2.g, s3.g);
+    sum_b += share * vec4(s0.b, s1.b, s2.b, s3.b);
     r = vec4(h0.r, h1.r, h2.r, h3.r);
     g = vec4(h0.g, h1.g, h2.g, h3.g);
     bl = vec4(h0.b, h1.b, h2.b, h3.b);
 }
 
+uint sky_part(float angle) {
+    float x = angle / kTwoPi;
+    int node = min(int((x - floor(x)) * float(params.sky_nodes)), params.sky_nodes - 1);
+    return uint(texelFetch(sky_nodes, 2 * node + 1).a);
+}
+
+#include "lib/exact_gather.glsl"
+
 // The light of what was nearest from `from` to `to`.
 void gather(bvec4 which, vec4 to, float sector_angle) {
-    vec4 angle = arctangent((to - from) / (1.0 + to * from));
+    if (kSurfaces != 0) {
+        bvec4 on_surface = both(which, greaterThanEqual(top, vec4(0.0)));
+        gather_surfaces(on_surface, to);
+        which = both(which, lessThan(top, vec4(0.0)));
+    }
+    vec4 angle = weight_of(from, to);
     bvec4 plain = which;
     if (kSky == 2) {
         bvec4 open = both(which, equal(top, vec4(kNone)));
         plain = both(which, notEqual(top, vec4(kNone)));
         vec4 r, g, b;
-        add_sky(open, sector_angle + arctangent(from), sector_angle + arctangent(to), r, g, b);
+        vec4 share = vec4(1.0);
+        if (kNodes != 0) share = angle / max(arctangent((to - from) / (1.0 + to * from)), vec4(1e-9));
+        add_sky(open, sector_angle + arctangent(from), sector_angle + arctangent(to), share, r, g, b);
         top_r = pick(top_r, r, open);
         top_g = pick(top_g, g, open);
         top_b = pick(top_b, b, open);
@@ -155,12 +178,34 @@ void change(bvec4 changed, float sector_angle) {
     if (kSky == 2) {
         vec4 sr, sg, sb;
         vec4 at = sector_angle + arctangent(now);
-        add_sky(bvec4(false), at, at, sr, sg, sb);
+        add_sky(bvec4(false), at, at, vec4(0.0), sr, sg, sb);
         r = pick(sr, r, found);
         g = pick(sg, g, found);
         b = pick(sb, b, found);
     }
+    if (kSurfaces != 0) {
+        vec4 sr = vec4(0.0), sg = vec4(0.0), sb = vec4(0.0);
+        for (int k = 0; k < 4; ++k) {
+            vec4 lane = lane_of(k);
+            float e = dot(lane, max(near_entry, vec4(0.0)));
+            vec3 c = surface_at(int(e), kind_of(e), vec2(dot(lane, px), dot(lane, py)), dot(lane, now));
+            sr += lane * c.r;
+            sg += lane * c.g;
+            sb += lane * c.b;
+        }
+        r = pick(r, sr, found);
+        g = pick(g, sg, found);
+        b = pick(b, sb, found);
+    }
+    // Which edge it is: between which two pieces; beside the sky also in which part of it, since a step changes the slope.
     uvec4 id = uvec4(pick(vec4(1.0), vec4(l0.a, l1.a, l2.a, l3.a) + 2.0, found));
+    if (kSky == 2 && kSlopes != 0) {
+        vec4 toward = sector_angle + arctangent(now);
+        uvec4 part = 1u + (uvec4(sky_part(toward.x), sky_part(toward.y), sky_part(toward.z), sky_part(toward.w)) << 22);
+        id = uvec4(found.x ? id.x : part.x, found.y ? id.y : part.y, found.z ? id.z : part.z, found.w ? id.w : part.w);
+        bvec4 sky_before = equal(top, vec4(kNone));
+        top_id = uvec4(sky_before.x ? part.x : top_id.x, sky_before.y ? part.y : top_id.y, sky_before.z ? part.z : top_id.z, sky_before.w ? part.w : top_id.w);
+    }
     vec4 end_depth = vec4(1.0);
     vec4 clearance = vec4(kFar);
     if (kSlopes != 0) {
@@ -205,15 +250,8 @@ void change(bvec4 changed, float sector_angle) {
         vec4 inverse = inversesqrt(1.0 + now * now);
         vec4 turn = inverse / max(pick(start_depth, top_end_depth, ends), vec4(1e-6));
         vec4 weight = pick(vec4(0.0), turn, both(changed, notEqual(top, vec4(kUnknown))));
-        vec4 along = (axis.y + side.y * now) * inverse * weight;
-        vec4 across = (axis.x + side.x * now) * inverse * weight;
         vec4 jr = top_r - r, jg = top_g - g, jb = top_b - b;
-        slope_x_r += jr * along;
-        slope_x_g += jg * along;
-        slope_x_b += jb * along;
-        slope_y_r -= jr * across;
-        slope_y_g -= jg * across;
-        slope_y_b -= jb * across;
+        add_slopes(jr, jg, jb, now, weight);
         vec4 size = max(max(abs(jr), abs(jg)), abs(jb));
         vec4 closeness = max(turn, 1.0 / max(pick(clearance, top_clearance, ends), vec4(1e-6)));
         third += pick(vec4(0.0), size * closeness * closeness * closeness, greaterThan(weight, vec4(0.0)));
@@ -239,7 +277,7 @@ int sectors_done(ivec2 point) { return params.continues != 0 ? int(imageLoad(slo
 
 // What a point has gathered: sums while it is not done, means then.
 void store(ivec2 point, int done, vec3 sum, uint seen, vec4 x, vec3 y) {
-    float whole = done < params.sectors ? 1.0 : kTwoPi;
+    float whole = done < params.sectors || kNodes != 0 ? 1.0 : kTwoPi;
     imageStore(value_image, point, vec4(sum / whole, float(seen & 0xffffffu)));
     imageStore(slope_x_image, point, x / whole);
     imageStore(slope_y_image, point, vec4(y / whole, float(done)));
@@ -250,29 +288,12 @@ ivec2 local_point(int first, int index, int count) {
     return ivec2(place & 0xff, place >> 8);
 }
 
-// Four of the points that a tile asks for; the last are repeated.
-void solve(int tile_index, int first, int count) {
-    int row = tile_index / params.tiles.x;
-    ivec2 tile = ivec2(tile_index - row * params.tiles.x, row);
-    ivec2 origin = tile * kExactTile;
-    int at = params.first_point + tile_index * params.tile_points;
-    ivec2 p0 = origin + local_point(at, first, count);
-    ivec2 p1 = origin + local_point(at, first + 1, count);
-    ivec2 p2 = origin + local_point(at, first + 2, count);
-    ivec2 p3 = origin + local_point(at, first + 3, count);
+ivec2 image_of(float element) { return ivec2(int(element) % kExactNodeRow, int(element) / kExactNodeRow); }
+
+// Four points of one tile, the last of them repeated: where they are in the images, and which are inside of shapes.
+void solve(int tile_index, ivec2 p0, ivec2 p1, ivec2 p2, ivec2 p3, bvec4 solid) {
     int s = sectors_done(p0);
     if (s >= params.sectors) return;
-    ivec2 corner = ivec2(0, params.first_row);
-    ivec2 last = params.canvas - 1;
-    ivec2 x0 = min(corner + p0, last), x1 = min(corner + p1, last), x2 = min(corner + p2, last), x3 = min(corner + p3, last);
-    px = vec4(x0.x, x1.x, x2.x, x3.x) + 0.5;
-    py = vec4(x0.y, x1.y, x2.y, x3.y) + 0.5;
-    // Without shapes the distance is a single texel.
-    ivec2 end = textureSize(distance_texture, 0) - 1;
-    vec4 room = vec4(texelFetch(distance_texture, min(x0 + params.border, end), 0).r, texelFetch(distance_texture, min(x1 + params.border, end), 0).r,
-                     texelFetch(distance_texture, min(x2 + params.border, end), 0).r, texelFetch(distance_texture, min(x3 + params.border, end), 0).r);
-    bvec4 solid = lessThanEqual(room, vec4(0.0));
-
     sum_r = vec4(0.0);
     sum_g = vec4(0.0);
     sum_b = vec4(0.0);
@@ -314,7 +335,7 @@ void solve(int tile_index, int first, int count) {
         uvec4 head = texelFetch(heads, list + s);
         // Each entry starts and ends at most one interval, and each step of the walk asks every entry.
         int most = int((head.y & 0xffffu) + (head.z & 0xffffu) + (head.w & 0xffu) + ((head.w >> 16) & 0xffu));
-        most = head.x >= kExactOpen ? 10 : (2 * most + 4) * (most + 5);
+        most = head.x >= kExactOpen ? 20 : (2 * most + 4) * (most + (kSurfaces != 0 ? 13 : 5));
         if (most > budget && budget < kBudget) break;
         if (head.x != kExactDark) {
             vec4 sector = texelFetch(sectors, s);
@@ -361,7 +382,10 @@ void solve(int tile_index, int first, int count) {
             top_g = vec4(0.0);
             top_b = vec4(0.0);
             top_id = uvec4(0u);
-            now = pick(now, limit, solid);
+            bvec4 idle = solid;
+            // What lies behind a surface does not light it.
+            if (kNodes != 0) idle = lessThan(normal_x * axis.x + normal_y * axis.y, vec4(-params.tan_half));
+            now = pick(now, limit, idle);
             while (any(lessThan(now, limit)) && budget > 0) {
                 vec4 ahead = now + kLookAhead;
                 next = limit;
@@ -370,7 +394,7 @@ void solve(int tile_index, int first, int count) {
                 // What was nearest hides as long as it goes on.
                 near_end = pick(vec4(-kFar), top_end, greaterThan(top_end, now));
                 near_far = top_far;
-                budget -= 5 + end_entry - first_straight;
+                budget -= 5 + end_entry - first_straight + (kSurfaces != 0 ? 8 : 0);
                 for (int i = first_straight; i < first_disc; ++i) consider(i, straight_at(i, ahead));
                 for (int i = first_disc; i < first_arc; ++i) consider(i, disc_at(i, ahead));
                 if (kArcs != 0) for (int i = first_arc; i < first_ellipse; i += 2) consider(i, arc_at(i, ahead));
@@ -401,10 +425,48 @@ void solve(int tile_index, int first, int count) {
     if (p3 != p2) store(p3, s, vec3(sum_r.w, sum_g.w, sum_b.w), signature.w, vec4(slope_x_r.w, slope_x_g.w, slope_x_b.w, third.w), vec3(slope_y_r.w, slope_y_g.w, slope_y_b.w));
 }
 
+// Of the points that a tile asks for.
+void solve_points(int tile_index, int first, int count) {
+    int row = tile_index / params.tiles.x;
+    ivec2 origin = ivec2(tile_index - row * params.tiles.x, row) * kExactTile;
+    int at = params.first_point + tile_index * params.tile_points;
+    ivec2 p0 = origin + local_point(at, first, count);
+    ivec2 p1 = origin + local_point(at, first + 1, count);
+    ivec2 p2 = origin + local_point(at, first + 2, count);
+    ivec2 p3 = origin + local_point(at, first + 3, count);
+    ivec2 corner = ivec2(0, params.first_row);
+    ivec2 last = params.canvas - 1;
+    ivec2 x0 = min(corner + p0, last), x1 = min(corner + p1, last), x2 = min(corner + p2, last), x3 = min(corner + p3, last);
+    px = vec4(x0.x, x1.x, x2.x, x3.x) + 0.5;
+    py = vec4(x0.y, x1.y, x2.y, x3.y) + 0.5;
+    // Without shapes the distance is a single texel.
+    ivec2 end = textureSize(distance_texture, 0) - 1;
+    vec4 room = vec4(texelFetch(distance_texture, min(x0 + params.border, end), 0).r, texelFetch(distance_texture, min(x1 + params.border, end), 0).r,
+                     texelFetch(distance_texture, min(x2 + params.border, end), 0).r, texelFetch(distance_texture, min(x3 + params.border, end), 0).r);
+    solve(tile_index, p0, p1, p2, p3, lessThanEqual(room, vec4(0.0)));
+}
+
+// Of the elements of surfaces.
+void solve_nodes(int tile_index, int first) {
+    vec4 n0 = texelFetch(nodes, 2 * first), n1 = texelFetch(nodes, 2 * first + 2), n2 = texelFetch(nodes, 2 * first + 4), n3 = texelFetch(nodes, 2 * first + 6);
+    px = vec4(n0.x, n1.x, n2.x, n3.x);
+    py = vec4(n0.y, n1.y, n2.y, n3.y);
+    normal_x = vec4(n0.z, n1.z, n2.z, n3.z);
+    normal_y = vec4(n0.w, n1.w, n2.w, n3.w);
+    solve(tile_index, image_of(texelFetch(nodes, 2 * first + 1).r), image_of(texelFetch(nodes, 2 * first + 3).r),
+          image_of(texelFetch(nodes, 2 * first + 5).r), image_of(texelFetch(nodes, 2 * first + 7).r), bvec4(false));
+}
+
 void main() {
     int index = int(gl_GlobalInvocationID.x);
+    if (kNodes != 0) {
+        index += params.origin.y * params.extent.x;
+        if (index >= params.jobs) return;
+        solve_nodes(int(texelFetch(jobs, index).r), 4 * index);
+        return;
+    }
     if (index >= int(counters[kExactCountLevel + 4 * params.level])) return;
     uint job = texelFetch(jobs, index).r;
     int tile = int(job & 0xffffffu);
-    solve(tile, 4 * int(job >> 24), int(counters[params.first_count + tile]));
+    solve_points(tile, 4 * int(job >> 24), int(counters[params.first_count + tile]));
 }

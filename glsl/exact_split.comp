@@ -15,6 +15,7 @@ layout(binding = kExactLeafImage, r32ui) uniform uimage2D leaf_image;
 layout(std430, binding = kExactPointsStorage) writeonly buffer Points { uint out_points[]; };
 layout(std430, binding = kExactCountersStorage) buffer Counters { uint counters[]; };
 layout(binding = kExactSkyUnit) uniform samplerBuffer mean_light;
+layout(binding = kExactHeadsUnit) uniform usamplerBuffer heads;
 
 float largest(vec3 c) { return max(c.r, max(c.g, c.b)); }
 
@@ -33,10 +34,15 @@ void main() {
     if (cell.x >= params.extent.x || cell.y >= params.extent.y) return;
     int h = params.cell;
     ivec2 corner = cell * h;  // first pixel, of the band
+    ivec4 window = params.window * (kExactTile / h);
     if (params.ask_first != 0) {
-        ask(corner);
+        // Elsewhere the tiles' corners only, for the mean of the light.
+        bool inside = all(greaterThanEqual(cell, window.xy)) && all(lessThanEqual(cell, window.zw));
+        bool of_tile = corner % kExactTile == ivec2(0) && all(lessThan(corner, params.tiles * kExactTile));
+        if (inside || of_tile) ask(corner);
         return;
     }
+    if (any(lessThan(cell, window.xy)) || any(greaterThanEqual(cell, window.zw))) return;
     if (h < kExactCell) {
         // Only where the larger cell was split.
         ivec2 larger = corner / (2 * h) * (2 * h);
@@ -84,6 +90,18 @@ void main() {
         vec3 off = max(max(abs(v1.rgb - v0.rgb - reach * (x0.rgb + x1.rgb)), abs(v3.rgb - v2.rgb - reach * (x2.rgb + x3.rgb))),
                        max(abs(v2.rgb - v0.rgb - reach * (y0.rgb + y2.rgb)), abs(v3.rgb - v1.rgb - reach * (y1.rgb + y3.rgb))));
         split = split || 0.5 * largest(off) > relative_to;
+    }
+    // All dark: then a beam through a gap narrower than the cell may fall between the corners. Not where no point of the tile
+    // can see any light.
+    if (brightest <= 0.0) {
+        ivec2 tile = corner / kExactTile;
+        int list = (tile.y * params.tiles.x + tile.x) * params.sectors;
+        for (int s = split ? params.sectors : 0; s < params.sectors; ++s) {
+            if (texelFetch(heads, list + s).x != kExactDark) {
+                split = true;
+                break;
+            }
+        }
     }
     if (!split) return;
 

@@ -25,4 +25,5 @@ void main() {
     vec3 radiance;
     int fate = march(p, d / size, 0.0, size, params.domain, params.border, budget, radiance);
     imageStore(pieces_image, ivec2(row, slot), vec4(radiance, fate == kRayBlocked ? 0.0 : 1.0));
+    report_lost_rays();
 }

@@ -1,5 +1,5 @@
 // Reads mean radiance, distance and material; writes the linear picture at pixel centres, never
-// antialiased. One thread is one pixel.
+// antialiased; alpha is 1 in free pixels and 0 in solid ones. One thread is one pixel.
 #version 430 core
 #include "compose.h"
 layout(std140, binding = kComposeParamsBinding) uniform Params { ComposeParams params; };
@@ -10,8 +10,11 @@ layout(rgba32f, binding = kComposeImageBinding) writeonly uniform image2D linear
 
 void main() {
     ivec2 texel = params.origin + ivec2(gl_GlobalInvocationID.xy);
-    ivec2 pixel = texel + ivec2(0, params.first_row);
-    if (pixel.x >= params.extent.x || pixel.y >= params.extent.y) return;
+    ivec2 size = imageSize(linear_image);
+    if (texel.x >= size.x || texel.y >= size.y) return;
+    ivec2 pixel = texel + params.first_pixel;
     bool solid = params.has_shapes != 0 && pixel_distance(pixel) <= 0.0;
-    imageStore(linear_image, texel, vec4(solid ? solid_radiance(pixel) : floor_radiance(pixel), 1.0));
+    vec3 radiance = solid ? solid_radiance(pixel) : floor_radiance(pixel);
+    // A scene may hold negative zeros, the picture none.
+    imageStore(linear_image, texel, vec4(mix(radiance, vec3(0.0), equal(radiance, vec3(0.0))), solid ? 0.0 : 1.0));
 }

@@ -89,4 +89,5 @@ void main() {
         }
     }
     imageStore(cascade_image, texel, vec4(0.25 * sum, 1.0));
+    report_lost_rays();
 }

@@ -32,9 +32,10 @@ vec3 ray_radiance(vec2 p, int ray, uint seed) {
 }
 
 void main() {
-    ivec2 pixel = params.origin + ivec2(gl_GlobalInvocationID.xy);
-    if (pixel.x >= params.extent.x || pixel.y >= params.extent.y) return;
-    vec4 sum = params.first_ray == 0 ? vec4(0.0) : imageLoad(sum_image, pixel);
+    ivec2 texel = params.origin + ivec2(gl_GlobalInvocationID.xy);
+    if (texel.x >= params.extent.x || texel.y >= params.extent.y) return;
+    ivec2 pixel = texel + params.first_pixel;
+    vec4 sum = params.first_ray == 0 ? vec4(0.0) : imageLoad(sum_image, texel);
     ivec2 at = min(pixel + params.border, textureSize(distance_texture, 0) - 1);
     if (texelFetch(distance_texture, at, 0).r > 0.0) {
         vec2 p = vec2(pixel) + 0.5;
@@ -42,5 +43,5 @@ void main() {
         for (int ray = params.first_ray; ray < params.end_ray; ++ray) sum.rgb += ray_radiance(p, ray, seed);
     }
     if (params.is_last != 0) sum /= float(params.ray_count);
-    imageStore(sum_image, pixel, sum);
+    imageStore(sum_image, texel, sum);
 }

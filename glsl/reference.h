@@ -13,7 +13,7 @@ const int kReferenceDistanceUnit = 4;   // r32f
 
 struct ReferenceParams {
     ivec2 origin;     // first pixel of this slice
-    ivec2 extent;     // canvas
+    ivec2 extent;     // pixels whose light is asked for
     ivec2 border;     // grid pixels left of and above the view
     int shape_count;
     int ray_count;    // of the whole picture, per pixel
@@ -23,6 +23,8 @@ struct ReferenceParams {
     int is_last;      // divide the sum by ray_count
     vec4 domain;      // x0 y0 x1 y1, pixels of the view
     vec4 sky;
+    ivec2 first_pixel; // of the canvas
+    ivec2 pad0;
 };
 
 #ifdef __cplusplus

@@ -11,7 +11,7 @@ layout(binding = kResolveCascadeUnit) uniform sampler2D cascade_texture;
 void main() {
     ivec2 pixel = params.origin + ivec2(gl_GlobalInvocationID.xy);
     if (pixel.x >= params.extent.x || pixel.y >= params.extent.y) return;
-    vec2 probe = (vec2(pixel) + 0.5 - params.first_probe) / params.spacing + 0.5;
+    vec2 probe = (vec2(params.first_pixel + pixel) + 0.5 - params.first_probe) / params.spacing + 0.5;
     probe = clamp(probe, vec2(0.5), vec2(params.probes) - 0.5);
     vec4 sum = vec4(0.0);
     for (int y = 0; y < params.tiles.y; ++y)

@@ -13,15 +13,14 @@ const int kResolveCascadeUnit = 6;
 
 struct ResolveParams {
     ivec2 origin;
-    ivec2 extent;      // canvas
+    ivec2 extent;      // pixels whose light is asked for
     ivec2 probes;      // of cascade 0
     ivec2 tiles;       // direction groups of cascade 0
     vec2 texel;        // 1 / texture size
     vec2 first_probe;  // px
     float spacing;     // px
     int aligned;       // 1: a probe at each pixel's centre, nothing to interpolate
-    int pad1;
-    int pad2;
+    ivec2 first_pixel; // of the canvas
 };
 
 #ifdef __cplusplus

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -33,15 +34,17 @@ double percentile(std::vector<double>& values, double share) {
     return below + (above - below) * (rank - double(low));
 }
 
-std::array<int, 4> rgba_at(const Image8& image, std::size_t pixel) {
-    const std::uint8_t* p = image.data.data() + pixel * std::size_t(image.channels);
+template <class T>
+std::array<int, 4> rgba_at(const BasicImage<T>& image, std::size_t pixel) {
+    constexpr int kOpaque = std::numeric_limits<T>::max();
+    const T* p = image.data.data() + pixel * std::size_t(image.channels);
     switch (image.channels) {
         case 1:
-            return {p[0], p[0], p[0], 255};
+            return {p[0], p[0], p[0], kOpaque};
         case 2:
             return {p[0], p[0], p[0], p[1]};
         case 3:
-            return {p[0], p[1], p[2], 255};
+            return {p[0], p[1], p[2], kOpaque};
         default:
             return {p[0], p[1], p[2], p[3]};
     }
@@ -109,7 +112,11 @@ std::variant<ErrorFigures, Problem> error_figures(const ImageF& a, const ImageF&
     return figures;
 }
 
-std::variant<PixelFigures, Problem> pixel_figures(const Image8& a, const Image8& b) {
+namespace {
+
+template <class T>
+std::variant<PixelFigures, Problem> figures_of(const BasicImage<T>& a, const BasicImage<T>& b) {
+    constexpr double kCode = sizeof(T) == 2 ? 257.0 : 1.0;
     if (auto problem = size_problem(a, b)) return *problem;
     PixelFigures figures;
     figures.pixels = std::uint64_t(a.width) * std::uint64_t(a.height);
@@ -124,10 +131,10 @@ std::variant<PixelFigures, Problem> pixel_figures(const Image8& a, const Image8&
         const auto x = rgba_at(a, i), y = rgba_at(b, i);
         bool differs = false;
         for (const std::size_t c : compared) {
-            const int difference = std::abs(x[c] - y[c]);
+            const double difference = std::abs(x[c] - y[c]) / kCode;
             figures.largest = std::max(figures.largest, difference);
             sum += difference;
-            squares += double(difference) * difference;
+            squares += difference * difference;
             differs = differs || difference != 0;
         }
         figures.differing += differs ? 1 : 0;
@@ -138,5 +145,10 @@ std::variant<PixelFigures, Problem> pixel_figures(const Image8& a, const Image8&
     if (squares > 0) figures.psnr_db = 10 * std::log10(255.0 * 255.0 * count / squares);
     return figures;
 }
+
+}  // namespace
+
+std::variant<PixelFigures, Problem> pixel_figures(const Image8& a, const Image8& b) { return figures_of(a, b); }
+std::variant<PixelFigures, Problem> pixel_figures(const Image16& a, const Image16& b) { return figures_of(a, b); }
 
 }  // namespace penumbra

@@ -34,7 +34,7 @@ struct ErrorFigures {
 std::variant<ErrorFigures, Problem> error_figures(const ImageF& a, const ImageF& b);
 
 struct PixelFigures {
-    int largest = 0;              // difference of a channel, 0 to 255
+    double largest = 0;           // difference of a channel, 0 to 255; of 16 bits with a fraction
     double mean = 0;              // difference of a channel, over all channels and pixels
     std::uint64_t differing = 0;  // pixels with a difference in any channel
     std::uint64_t pixels = 0;
@@ -43,5 +43,7 @@ struct PixelFigures {
 
 // Compares as encoded. Grey is taken as equal RGB, a missing alpha as 255.
 std::variant<PixelFigures, Problem> pixel_figures(const Image8& a, const Image8& b);
+// In the same units: a code of 8 bits is 257 of 16.
+std::variant<PixelFigures, Problem> pixel_figures(const Image16& a, const Image16& b);
 
 }  // namespace penumbra

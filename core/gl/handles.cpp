@@ -17,6 +17,7 @@ constexpr GLenum kScratchUnit = 95;
 std::size_t texel_bytes(GLenum format) {
     switch (format) {
         case GL_RGBA32F: return 16;
+        case GL_RGBA16:
         case GL_RGBA16F: return 8;
         case GL_RGBA8:
         case GL_R32F:
@@ -91,6 +92,13 @@ void Texture2D::read(GLenum format, GLenum type, void* out) const {
     check_errors("reading a texture back");
 }
 
+void Texture2D::write(GLenum format, GLenum type, const void* in) {
+    glBindTexture(GL_TEXTURE_2D, id_);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size_.x, size_.y, format, type, in);
+    check_errors("writing a texture");
+}
+
 void Texture2D::fill(GLenum format, GLenum type, const void* value) {
     // glClearTexImage is GL 4.4; a framebuffer clear is in 4.3, but one upload row by row is simplest and
     // this is for tests and small textures only.
@@ -127,6 +135,9 @@ BufferTexture::BufferTexture(GLenum internal_format, const void* data, std::size
     glGenBuffers(1, &buffer_);
     glBindBuffer(GL_TEXTURE_BUFFER, buffer_);
     glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(buffer_texture_bytes(bytes)), nullptr, GL_STATIC_DRAW);
+    // What is shorter than a texel is filled up: the driver would read on behind it.
+    static constexpr unsigned char kNothing[16] = {};
+    if (bytes < sizeof(kNothing)) glBufferSubData(GL_TEXTURE_BUFFER, 0, sizeof(kNothing), kNothing);
     if (bytes > 0) glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
     glGenTextures(1, &id_);
     // Not on a unit whose buffer texture a pass is about to read.

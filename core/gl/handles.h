@@ -54,6 +54,8 @@ public:
     void bind_image(int unit, GLenum access) const;
     // The whole level, rows from y = 0 down, tightly packed.
     void read(GLenum format, GLenum type, void* out) const;
+    // As read(), the other way.
+    void write(GLenum format, GLenum type, const void* in);
     void fill(GLenum format, GLenum type, const void* value);
     // All texels of an unsigned integer format, on the device.
     void clear(GLuint value);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
@@ -70,10 +71,13 @@ std::optional<DecodeError> over_limits(std::span<const std::uint8_t> bytes,
     return std::nullopt;
 }
 
-}  // namespace
-
-std::variant<Texels, DecodeError> decode_png(std::span<const std::uint8_t> bytes,
-                                             const DecodeLimits& limits) {
+// The samples of `format`, with the size; `pixel` is the bytes of one pixel.
+struct Size {
+    int width = 0;
+    int height = 0;
+};
+std::optional<DecodeError> decode(std::span<const std::uint8_t> bytes, const DecodeLimits& limits, int format,
+                                  std::size_t pixel, Size& size, std::vector<std::uint8_t>& samples) {
     if (auto error = over_limits(bytes, limits)) {
         return *error;
     }
@@ -107,19 +111,47 @@ std::variant<Texels, DecodeError> decode_png(std::span<const std::uint8_t> bytes
                            std::to_string(bytes.size()) + " bytes can hold"};
     }
 
-    Texels texels;
-    texels.width = int(header.width);
-    texels.height = int(header.height);
-    texels.rgba.resize(4 * std::size_t(header.width) * std::size_t(header.height));
-    code = spng_decode_image(context.get(), texels.rgba.data(), texels.rgba.size(), SPNG_FMT_RGBA8,
-                             SPNG_DECODE_TRNS);
+    size = {int(header.width), int(header.height)};
+    samples.resize(pixel * std::size_t(header.width) * std::size_t(header.height));
+    code = spng_decode_image(context.get(), samples.data(), samples.size(), format, SPNG_DECODE_TRNS);
     if (code == 0) {
         code = spng_decode_chunks(context.get());  // a file cut off after its pixels is cut off too
     }
     if (code != 0) {
         return failed(code);
     }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::variant<Texels, DecodeError> decode_png(std::span<const std::uint8_t> bytes,
+                                             const DecodeLimits& limits) {
+    Texels texels;
+    Size size;
+    if (auto error = decode(bytes, limits, SPNG_FMT_RGBA8, 4, size, texels.rgba)) {
+        return *error;
+    }
+    texels.width = size.width;
+    texels.height = size.height;
     return texels;
+}
+
+std::variant<Image16, DecodeError> decode_png16(std::span<const std::uint8_t> bytes,
+                                                const DecodeLimits& limits) {
+    Size size;
+    std::vector<std::uint8_t> samples;
+    if (auto error = decode(bytes, limits, SPNG_FMT_RGBA16, 8, size, samples)) {
+        return *error;
+    }
+    Image16 image(size.width, size.height, 4);
+    std::memcpy(image.data.data(), samples.data(), samples.size());  // in the order of this machine
+    return image;
+}
+
+bool is_png16(std::span<const std::uint8_t> bytes) {
+    constexpr std::size_t kBitDepth = 24;  // in the head of every PNG
+    return bytes.size() > kBitDepth && bytes[0] == 0x89 && bytes[kBitDepth] == 16;
 }
 
 }  // namespace penumbra

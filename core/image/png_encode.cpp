@@ -195,4 +195,49 @@ Bytes encode_png(const Image8& image) {
     return file;
 }
 
+// Of 16 bits: SUB on whole samples, the high byte first, libdeflate. What runs and palettes save of 8 bits, 16 do not have.
+Bytes encode_png(const Image16& image) {
+    assert(image.width > 0 && image.height > 0);
+    assert(image.channels == 1 || image.channels == 3 || image.channels == 4);
+    const std::size_t pixel = 2 * std::size_t(image.channels);
+    const std::size_t size = std::size_t(image.width) * pixel;
+    Bytes filtered((size + 1) * std::size_t(image.height)), row(size);
+    for (int y = 0; y < image.height; ++y) {
+        const std::uint16_t* from = image.at(0, y);
+        for (std::size_t i = 0; i < size; i += 2) {
+            row[i] = std::uint8_t(from[i / 2] >> 8);
+            row[i + 1] = std::uint8_t(from[i / 2]);
+        }
+        std::uint8_t* const to = filtered.data() + std::size_t(y) * (size + 1);
+        *to = kFilterSub;
+        std::memcpy(to + 1, row.data(), pixel);
+        for (std::size_t i = pixel; i < size; ++i) to[1 + i] = std::uint8_t(row[i] - row[i - pixel]);
+    }
+    Bytes file;
+    file.reserve(kMostHeadBytes);
+    file.assign(kSignature.begin(), kSignature.end());
+    const std::size_t header = begin_chunk(file, "IHDR");
+    file.resize(file.size() + 13);  // compression, filter method and interlace are 0
+    std::uint8_t* const ihdr = file.data() + file.size() - 13;
+    put_u32(ihdr, std::uint32_t(image.width));
+    put_u32(ihdr + 4, std::uint32_t(image.height));
+    ihdr[8] = 16;
+    ihdr[9] = image.channels == 1 ? 0 : image.channels == 3 ? 2 : 6;
+    finish_chunk(file, header);
+    const std::size_t srgb = begin_chunk(file, "sRGB");
+    file.push_back(kPerceptual);
+    finish_chunk(file, srgb);
+    const std::unique_ptr<libdeflate_compressor, CompressorDeleter> compressor(libdeflate_alloc_compressor(kCompressionLevel));
+    if (!compressor) {
+        throw std::bad_alloc();
+    }
+    const std::size_t data = begin_chunk(file, "IDAT");
+    const std::size_t start = file.size();
+    file.resize(start + libdeflate_zlib_compress_bound(compressor.get(), filtered.size()));
+    file.resize(start + libdeflate_zlib_compress(compressor.get(), filtered.data(), filtered.size(), file.data() + start, file.size() - start));
+    finish_chunk(file, data);
+    finish_chunk(file, begin_chunk(file, "IEND"));
+    return file;
+}
+
 }  // namespace penumbra

@@ -19,7 +19,7 @@ public:
                  const DistanceField& field, const gl::Texture2D* upper, const PassSettings& settings, gl::Texture2D& out);
 
 private:
-    gl::ComputeProgram program_;
+    gl::ProgramForms program_;
 };
 
 }  // namespace penumbra

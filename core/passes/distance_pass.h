@@ -20,7 +20,7 @@ public:
     static DistanceField empty_field(const Plan& plan);
 
 private:
-    gl::ComputeProgram program_;
+    gl::ProgramForms program_;
 };
 
 }  // namespace penumbra

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <numeric>
 
@@ -53,11 +54,12 @@ struct LevelPoints {
 struct ExactPass::Band {
     glsl::ExactParams params{};
     gl::BufferTexture root_entries, root_lights, sectors, sky;
-    gl::Texture2D value, slope_x, slope_y, state, leaf;
+    gl::BufferTexture surfaces, materials;
+    gl::Texture2D value, slope_x, slope_y, state, leaf, lights;
     glm::ivec2 coarse_tiles{0};
     std::array<LevelPoints, kLevels> levels{};
     bool always_finishes = false;
-    int rows = 0;
+    glm::ivec2 area{0};  // px that its lists cover
 };
 
 ExactPass::ExactPass(const std::string& shader_dir)
@@ -66,11 +68,13 @@ ExactPass::ExactPass(const std::string& shader_dir)
       gather_("exact_jobs.comp", sizeof(glsl::ExactParams), shader_dir),
       mean_("exact_mean.comp", sizeof(glsl::ExactParams), shader_dir),
       fill_("exact_fill.comp", sizeof(glsl::ExactParams), shader_dir),
-      counters_(GL_R32UI, 64) {}
+      reflect_("exact_reflect.comp", sizeof(glsl::ExactParams), shader_dir),
+      counters_(GL_R32UI, 4 * glsl::kExactCountTiles),
+      change_(GL_R32UI, 8) {}
 
 std::size_t ExactPass::bytes() const {
     return coarse_heads_.bytes() + coarse_entries_.bytes() + coarse_lights_.bytes() + heads_.bytes() + entries_.bytes() +
-           lights_.bytes() + points_.bytes() + counters_.bytes() + means_.bytes();
+           lights_.bytes() + points_.bytes() + counters_.bytes() + means_.bytes() + elements_.bytes() + elements_before_.bytes();
 }
 
 gl::ComputeProgram& ExactPass::lists_for(const ExactPlan& exact) {
@@ -87,7 +91,9 @@ gl::ComputeProgram& ExactPass::solver_for(const Needs& needs) {
     const gl::ShaderConstants constants = {{"kArcs", needs.arcs ? 1 : 0},
                                            {"kEllipses", needs.ellipses ? 1 : 0},
                                            {"kSky", needs.sky},
-                                           {"kSlopes", needs.slopes ? 1 : 0}};
+                                           {"kSlopes", needs.slopes ? 1 : 0},
+                                           {"kSurfaces", needs.surfaces ? 1 : 0},
+                                           {"kNodes", needs.nodes ? 1 : 0}};
     return solvers_.emplace(needs, gl::ComputeProgram("exact_solve.comp", sizeof(glsl::ExactParams), shader_dir_, constants)).first->second;
 }
 
@@ -148,7 +154,7 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
     };
     int ratio = 0;
     if (exact.coarse_tile > 0) {
-        band.coarse_tiles = {divided_up(plan.canvas.x, exact.coarse_tile), divided_up(band.rows, exact.coarse_tile)};
+        band.coarse_tiles = {divided_up(band.area.x, exact.coarse_tile), divided_up(band.area.y, exact.coarse_tile)};
         make(band.coarse_tiles, exact.coarse_tile, 0, true, coarse_heads_, coarse_entries_, coarse_lights_);
         ratio = exact.coarse_tile / glsl::kExactTile;
     }
@@ -164,7 +170,7 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
     band.levels[static_cast<std::size_t>(level)].write_to(params);
     const PackedOutline& outline = plan.exact.outline;
     gl::ComputeProgram& program =
-        solver_for({outline.counts[2] > 0, outline.counts[3] > 0, params.sky_kind, level < kLevels - 1});
+        solver_for({outline.counts[2] > 0, outline.counts[3] > 0, params.sky_kind, level < kLevels - 1, plan.exact.bounces > 0, false});
     const int tiles = params.tiles.x * params.tiles.y;
     params.extent = {tiles, 1};
     jobs_.bind_storage(glsl::kExactPointsStorage);
@@ -174,17 +180,30 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
     band.slope_x.bind_image(glsl::kExactSlopeXImage, GL_READ_WRITE);
     band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_WRITE);
     field.distance.bind_texture(glsl::kExactDistanceUnit);
+    points_.bind_texture(glsl::kExactPointsUnit);
+    run_solver(params, band, work, [&](const glsl::ExactParams& p) {
+        program.dispatch_indirect(p, 4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1));
+    });
+    return work;
+}
+
+// Dispatches until every point is done: one whose loops have spent their iterations goes on in the next.
+void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work,
+                           const std::function<void(const glsl::ExactParams&)>& dispatch) {
     heads_.bind_texture(glsl::kExactHeadsUnit);
     entries_.bind_texture(glsl::kExactEntriesUnit);
     lights_.bind_texture(glsl::kExactLightsUnit);
-    points_.bind_texture(glsl::kExactPointsUnit);
     jobs_.bind_texture(glsl::kExactJobsUnit);
     band.sectors.bind_texture(glsl::kExactSectorsUnit);
     band.sky.bind_texture(glsl::kExactSkyUnit);
+    if (band.surfaces) {
+        band.surfaces.bind_texture(glsl::kExactSurfacesUnit);
+        elements_.bind_texture(glsl::kExactElementsUnit);
+    }
     counters_.bind_storage(glsl::kExactCountersStorage);
     counters_.bind_indirect();
     for (;;) {
-        program.dispatch_indirect(params, 4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1));
+        dispatch(params);
         ++work.dispatches;
         if (band.always_finishes) break;
         std::uint32_t unfinished = 0;
@@ -194,11 +213,124 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
         counters_.write(4 * glsl::kExactCountUnfinished, &unfinished, sizeof(unfinished));
         params.continues = 1;
     }
+}
+
+PassWork ExactPass::reflect(const Plan& plan, Band& band, bool first) {
+    const Surfaces& surfaces = plan.exact.outline.surfaces;
+    glsl::ExactParams params = band.params;
+    params.level = first ? 0 : 1;
+    params.extent = {static_cast<int>(surfaces.pieces.size()), 1};
+    const std::uint32_t zero[2] = {};
+    change_.write(0, zero, sizeof(zero));
+    band.surfaces.bind_texture(glsl::kExactSurfacesUnit);
+    band.materials.bind_texture(glsl::kExactMaterialsUnit);
+    band.value.bind_texture(glsl::kExactNodeValuesUnit);
+    if (band.lights) {
+        band.lights.bind_texture(glsl::kExactNodeLightsUnit);
+        params.light_scale = static_cast<float>(1.0 / plan.radiance_scale);
+    }
+    // The next elements are made from the last.
+    std::swap(elements_, elements_before_);
+    elements_before_.bind_texture(glsl::kExactElementsUnit);
+    elements_.bind_storage(glsl::kExactElementsStorage);
+    change_.bind_storage(glsl::kExactChangeStorage);
+    PassWork work;
+    work.dispatches = reflect_.dispatch(params, params.extent);
+    work.bytes = surfaces.elements * glsl::kExactElementTexels * std::size_t(16);
     return work;
 }
 
+void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass& delta, const Record& record, Band& band) {
+    const ExactPlan& exact = plan.exact;
+    const Surfaces& surfaces = exact.outline.surfaces;
+    for (gl::StorageBuffer* buffer : {&elements_, &elements_before_})
+        *buffer = at_least(std::move(*buffer), GL_RGBA32F, surfaces.elements * glsl::kExactElementTexels * 16);
+    band.surfaces = gl::BufferTexture(GL_RGBA32F, surfaces.pieces.data(), surfaces.pieces.size() * 16);
+    band.materials = gl::BufferTexture(GL_RGBA32F, surfaces.materials.data(), surfaces.materials.size() * 16);
+    const glm::ivec2 image{glsl::kExactNodeRow, divided_up(static_cast<int>(surfaces.elements), glsl::kExactNodeRow)};
+    band.value = settings.take(GL_RGBA32F, image);
+    band.slope_x = settings.take(GL_RGBA32F, image);
+    band.slope_y = settings.take(GL_RGBA32F, image);
+    if (plan.delta.used()) band.lights = settings.take(GL_RGBA32F, image);
+    const int elements = static_cast<int>(surfaces.elements);
+    record("reflect", {elements, 1}, [&] { return reflect(plan, band, true); });
+
+    // Surfaces in the margin light others as well: lists are for the whole domain, in bands as the picture's.
+    const glm::ivec2 origin = -plan.grid.border - 1;
+    const glm::ivec2 domain = plan.grid.size + 2;
+    struct Part {
+        glm::ivec2 origin, area, tiles;
+        SurfaceJobs jobs;
+    };
+    std::vector<Part> parts;
+    for (int row = 0; row < domain.y; row += exact.band_rows) {
+        Part part;
+        part.origin = origin + glm::ivec2(0, row);
+        part.area = {domain.x, std::min(exact.band_rows, domain.y - row)};
+        part.tiles = {divided_up(part.area.x, glsl::kExactTile), divided_up(part.area.y, glsl::kExactTile)};
+        Surfaces inside;
+        for (const Surfaces::Node& node : surfaces.nodes) {
+            const double y = double(node.place.y) - 0.5 - part.origin.y;
+            if ((row == 0 || y >= 0) && (row + exact.band_rows >= domain.y || y < part.area.y)) inside.nodes.push_back(node);
+        }
+        part.jobs = surface_jobs(inside, part.origin, part.tiles, glsl::kExactTile);
+        if (!part.jobs.tiles.empty()) parts.push_back(std::move(part));
+    }
+    const PackedOutline& outline = exact.outline;
+    gl::ComputeProgram& program =
+        solver_for({outline.counts[2] > 0, outline.counts[3] > 0, band.params.sky_kind, false, true, true});
+    for (int i = 0; i < exact.bounces; ++i) {
+        for (const Part& part : parts) {
+            band.area = part.area;
+            band.params.tiles = part.tiles;
+            band.params.list_origin = part.origin;
+            // One part's lists serve all bounces.
+            if (i == 0 || parts.size() > 1)
+                record("exact lists", {part.tiles.x, part.tiles.y * exact.sectors}, [&] { return make_lists(plan, band); });
+            const int jobs = static_cast<int>(part.jobs.tiles.size());
+            const gl::BufferTexture nodes(GL_RGBA32F, part.jobs.nodes.data(), part.jobs.nodes.size() * 16);
+            jobs_ = at_least(std::move(jobs_), GL_R32UI, part.jobs.tiles.size() * 4);
+            jobs_.write(0, part.jobs.tiles.data(), part.jobs.tiles.size() * 4);
+            if (i == 0 && band.lights)
+                record("lights on surfaces", {4 * jobs, 1},
+                       [&] { return delta.surfaces(plan, {part.origin, part.area, jobs_, nodes, jobs}, band.lights); });
+            record("bounce", {4 * jobs, 1}, [&] {
+                PassWork work;
+                const std::vector<std::uint32_t> zero(glsl::kExactCountTiles);
+                counters_.write(0, zero.data(), zero.size() * 4);
+                band.value.bind_image(glsl::kExactValueImage, GL_READ_WRITE);
+                band.slope_x.bind_image(glsl::kExactSlopeXImage, GL_READ_WRITE);
+                band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_WRITE);
+                nodes.bind_texture(glsl::kExactNodesUnit);
+                glsl::ExactParams params = band.params;
+                params.jobs = jobs;
+                params.extent = {params.jobs, 1};
+                run_solver(params, band, work, [&](const glsl::ExactParams& p) { program.dispatch(p, p.extent); });
+                std::uint32_t spent = 0;
+                counters_.read(4 * glsl::kExactCountSpent, &spent, sizeof(spent));
+                if (spent != 0)
+                    throw TooDense("The scene is too dense for the method 'exact' on this device: at " + std::to_string(spent) +
+                                   " points of surfaces its loops ran out of iterations.");
+                return work;
+            });
+        }
+        record("reflect", {elements, 1}, [&] { return reflect(plan, band, false); });
+        if (exact.converged <= 0) continue;
+        std::uint32_t bits[2] = {};
+        change_.read(0, bits, sizeof(bits));
+        float change = 0, brightest = 0;
+        std::memcpy(&change, &bits[0], 4);
+        std::memcpy(&brightest, &bits[1], 4);
+        if (double(change) <= exact.converged * double(brightest)) break;
+    }
+    settings.give(std::move(band.value));
+    settings.give(std::move(band.slope_x));
+    settings.give(std::move(band.slope_y));
+    settings.give(std::move(band.lights));
+}
+
 void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings,
-                    const Record& record, gl::Texture2D& out) {
+                    DeltaPass& delta, const Record& record, gl::Texture2D& out) {
     const ExactPlan& exact = plan.exact;
     const PackedOutline& outline = exact.outline;
     Band band;
@@ -209,7 +341,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         exact.sky_nodes > 0 ? sky_nodes(sky, exact.sky_nodes, plan.radiance_scale) : std::vector<glm::vec4>();
     band.sky = gl::BufferTexture(GL_RGBA32F, nodes.data(), nodes.size() * 16);
 
-    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.canvas);
+    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.lit.size);
     glsl::ExactParams& params = band.params;
     params.canvas = plan.canvas;
     params.border = plan.grid.border;
@@ -226,10 +358,20 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
     params.root_counts = {outline.counts[0], outline.counts[1], outline.counts[2], outline.counts[3]};
     params.root_lights = {outline.lights[0], outline.lights[1], outline.lights[2], outline.lights[3]};
 
+    if (exact.bounces > 0) bounce(plan, settings, delta, record, band);
     for (int row = 0; row < plan.canvas.y; row += exact.band_rows) {
-        band.rows = std::min(exact.band_rows, plan.canvas.y - row);
+        band.area = {plan.canvas.x, std::min(exact.band_rows, plan.canvas.y - row)};
         params.first_row = row;
-        params.tiles = {divided_up(plan.canvas.x, glsl::kExactTile), divided_up(band.rows, glsl::kExactTile)};
+        params.list_origin = {0, row};
+        // Of this band, the rows that are asked for, and the tiles that they are in.
+        const int first_lit = std::max(plan.lit.first.y - row, 0);
+        const int end_lit = std::min(plan.lit.end().y - row, band.area.y);
+        if (first_lit >= end_lit) continue;
+        params.window = {plan.lit.first.x / glsl::kExactTile, first_lit / glsl::kExactTile,
+                         divided_up(plan.lit.end().x, glsl::kExactTile), divided_up(end_lit, glsl::kExactTile)};
+        params.fill_first = {plan.lit.first.x, first_lit};
+        params.fill_row = row + first_lit - plan.lit.first.y;
+        params.tiles = {divided_up(band.area.x, glsl::kExactTile), divided_up(band.area.y, glsl::kExactTile)};
         const std::size_t tiles = static_cast<std::size_t>(params.tiles.x) * static_cast<std::size_t>(params.tiles.y);
         std::size_t room = 0;
         for (std::size_t level = 0; level < kLevels; ++level) {
@@ -266,6 +408,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             points_.bind_storage(glsl::kExactPointsStorage);
             counters_.bind_storage(glsl::kExactCountersStorage);
             means_.bind_texture(glsl::kExactSkyUnit);
+            heads_.bind_texture(glsl::kExactHeadsUnit);
             glsl::ExactParams p = params;
             p.ask_first = ask_first ? 1 : 0;
             p.cell = glsl::kExactCell >> level;
@@ -295,7 +438,8 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             record("exact cells", cells, [&] { return split(level, false); });
             record(points_name(level + 1).c_str(), cells * 2, [&] { return solve(plan, field, band, level + 1); });
         }
-        record("exact fill", {plan.canvas.x, band.rows}, [&] {
+        std::vector<std::uint32_t> counted(zero.size());
+        record("exact fill", {plan.lit.size.x, end_lit - first_lit}, [&] {
             PassWork work;
             band.value.bind_image(glsl::kExactValueImage, GL_READ_ONLY);
             band.slope_x.bind_image(glsl::kExactSlopeXImage, GL_READ_ONLY);
@@ -303,16 +447,15 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             band.leaf.bind_image(glsl::kExactLeafImage, GL_READ_ONLY);
             out.bind_image(glsl::kExactRadianceImage, GL_WRITE_ONLY);
             glsl::ExactParams p = params;
-            p.extent = {plan.canvas.x, band.rows};
+            p.extent = {plan.lit.size.x, end_lit - first_lit};
             work.dispatches = fill_.dispatch(p, p.extent, settings.pixels);
+            counters_.read(0, counted.data(), counted.size() * 4);
+            work.points = std::accumulate(counted.begin() + glsl::kExactCountTiles, counted.end(), std::size_t(0));
             return work;
         });
-        std::vector<std::uint32_t> counted(zero.size());
-        counters_.read(0, counted.data(), counted.size() * 4);
         if (counted[glsl::kExactCountSpent] != 0)
             throw TooDense("The scene is too dense for the method 'exact' on this device: at " +
                            std::to_string(counted[glsl::kExactCountSpent]) + " points its loops ran out of iterations.");
-        points_solved_ += std::accumulate(counted.begin() + glsl::kExactCountTiles, counted.end(), std::size_t(0));
         settings.give(std::move(band.value));
         settings.give(std::move(band.slope_x));
         settings.give(std::move(band.slope_y));

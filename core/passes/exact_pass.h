@@ -12,8 +12,10 @@
 #include "core/device_error.h"
 #include "core/gl/program.h"
 #include "core/gl/storage_buffer.h"
+#include "core/passes/delta_pass.h"
 #include "core/passes/frame.h"
 #include "core/plan/plan.h"
+#include "glsl/exact.h"
 
 namespace penumbra {
 
@@ -32,7 +34,8 @@ public:
 
     // `record(name, extent, run)` times each step: lists, points, cells, fill.
     using Record = std::function<void(const char* name, glm::ivec2 extent, const std::function<PassWork()>& run)>;
-    void run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings,
+    // `delta` lights surfaces where light bounces.
+    void run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings, DeltaPass& delta,
              const Record& record, gl::Texture2D& out);
 
     std::size_t bytes() const;
@@ -41,12 +44,17 @@ private:
     struct Band;
     PassWork make_lists(const Plan& plan, Band& band);
     PassWork solve(const Plan& plan, const DistanceField& field, Band& band, int level);
+    // Lets the light bounce between surfaces: afterwards `elements_` tells what each shines with.
+    void bounce(const Plan& plan, const PassSettings& settings, DeltaPass& delta, const Record& record, Band& band);
+    PassWork reflect(const Plan& plan, Band& band, bool first);
+    void run_solver(glsl::ExactParams params, Band& band, PassWork& work,
+                    const std::function<void(const glsl::ExactParams&)>& dispatch);
 
     // A program for what a scene has, compiled when first asked for.
     struct Needs {
         bool arcs, ellipses;
         int sky;
-        bool slopes;
+        bool slopes, surfaces, nodes;
         auto operator<=>(const Needs&) const = default;
     };
     gl::ComputeProgram& lists_for(const ExactPlan& exact);
@@ -59,10 +67,11 @@ private:
     gl::ComputeProgram gather_;
     gl::ComputeProgram mean_;
     gl::ComputeProgram fill_;
+    gl::ComputeProgram reflect_;
     gl::StorageBuffer coarse_heads_, coarse_entries_, coarse_lights_;
     gl::StorageBuffer heads_, entries_, lights_;
     gl::StorageBuffer points_, jobs_, counters_, means_;
-    std::size_t points_solved_ = 0;
+    gl::StorageBuffer elements_, elements_before_, change_;
 };
 
 }  // namespace penumbra

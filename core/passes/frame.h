@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "core/gl/handles.h"
+#include "core/gl/shader_source.h"
 #include "core/gl/texture_pool.h"
+#include "core/plan/plan.h"
 
 namespace penumbra {
 
@@ -32,11 +34,18 @@ struct PassSettings {
     }
 };
 
+// For programs that read the scene (glsl/lib/scene.glsl): the kinds of shapes that it has. None: made for all.
+inline gl::ShaderConstants scene_constants(const ProgramNeeds& needs) {
+    if (needs.general) return {};
+    return {{"kSceneEllipses", needs.ellipses ? 1 : 0}, {"kSceneOutlines", needs.outlines ? 1 : 0}, {"kSceneBitmaps", needs.bitmaps ? 1 : 0}};
+}
+
 // What a pass reports of its run.
 struct PassWork {
     int dispatches = 0;
     std::size_t rays = 0;
     std::size_t bytes = 0;  // written to textures
+    std::size_t points = 0;  // solved
 };
 
 }  // namespace penumbra

@@ -101,7 +101,7 @@ PassWork HrcPass::pieces(const Plan& plan, const HrcQuadrant& q, const DistanceF
         field.distance.bind_texture(glsl::kCascadeDistanceUnit);
         field.material.bind_texture(glsl::kCascadeMaterialUnit);
         list.bind_texture(glsl::kHrcListUnit);
-        if (params.listed > 0) work.dispatches += trace_.dispatch(params, params.extent, settings.rays);
+        if (params.listed > 0) work.dispatches += trace_.of(scene_constants(plan.needs)).dispatch(params, params.extent, settings.rays);
         settings.give(std::move(list));
         settings.give(std::move(count));
     } else {
@@ -183,6 +183,7 @@ PassWork HrcPass::finish(const Plan& plan, const DistanceField& field, const gl:
     params.extent = plan.canvas;
     out = settings.take(format(plan), plan.canvas);
     field.distance.bind_texture(glsl::kHrcDistanceUnit);
+    field.material.bind_texture(glsl::kCascadeMaterialUnit);
     sum.bind_texture(glsl::kHrcSumUnit);
     out.bind_image(glsl::kHrcImageBinding, GL_WRITE_ONLY);
     PassWork work;

@@ -41,7 +41,7 @@ private:
     };
 
     ByFormat low_;
-    gl::ComputeProgram trace_;
+    gl::ProgramForms trace_;
     ByFormat extend_;
     ByFormat merge_;
     gl::ComputeProgram clear_;

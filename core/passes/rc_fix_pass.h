@@ -20,8 +20,8 @@ public:
                  const DistanceField& field, const gl::Texture2D* upper, const PassSettings& settings, gl::Texture2D& out);
 
 private:
-    gl::ComputeProgram joined_;  // to the probes of the cascade above
-    gl::ComputeProgram last_;    // to the sky
+    gl::ProgramForms joined_;  // to the probes of the cascade above
+    gl::ProgramForms last_;    // to the sky
 };
 
 }  // namespace penumbra

@@ -12,9 +12,10 @@ ReferencePass::ReferencePass(const std::string& shader_dir)
 
 PassWork ReferencePass::run(const Plan& plan, const Sky& sky, const SceneBuffers& scene, const DistanceField& field,
                             const PassSettings& settings, gl::Texture2D& out) {
-    out = settings.take(GL_RGBA32F, plan.canvas);
+    out = settings.take(GL_RGBA32F, plan.lit.size);
     glsl::ReferenceParams params{};
-    params.extent = plan.canvas;
+    params.extent = plan.lit.size;
+    params.first_pixel = plan.lit.first;
     params.border = plan.grid.border;
     params.shape_count = plan.shape_slices.empty() ? 0 : plan.shape_slices.back().end;
     params.ray_count = plan.reference.rays;
@@ -31,10 +32,10 @@ PassWork ReferencePass::run(const Plan& plan, const Sky& sky, const SceneBuffers
         params.end_ray = std::min(ray + plan.reference.rays_per_dispatch, plan.reference.rays);
         params.is_last = params.end_ray == plan.reference.rays ? 1 : 0;
         const std::size_t cost = static_cast<std::size_t>(params.end_ray - ray) * plan.reference.tests_per_ray;
-        work.dispatches += program_.dispatch(params, plan.canvas, settings.distance_iterations / std::max<std::size_t>(cost, 1));
+        work.dispatches += program_.dispatch(params, plan.lit.size, settings.distance_iterations / std::max<std::size_t>(cost, 1));
     }
-    work.rays = static_cast<std::size_t>(plan.reference.rays) * static_cast<std::size_t>(plan.canvas.x) *
-                static_cast<std::size_t>(plan.canvas.y);
+    work.rays = static_cast<std::size_t>(plan.reference.rays) * static_cast<std::size_t>(plan.lit.size.x) *
+                static_cast<std::size_t>(plan.lit.size.y);
     work.bytes = out.bytes();
     return work;
 }

@@ -10,9 +10,10 @@ ResolvePass::ResolvePass(const std::string& shader_dir)
 
 PassWork ResolvePass::run(const Plan& plan, const gl::Texture2D& cascade, const PassSettings& settings, gl::Texture2D& out) {
     const CascadePlan& c = plan.cascades.front();
-    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.canvas);
+    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.lit.size);
     glsl::ResolveParams params{};
-    params.extent = plan.canvas;
+    params.extent = plan.lit.size;
+    params.first_pixel = plan.lit.first;
     params.probes = c.probes;
     params.tiles = c.tiles;
     params.texel = glm::vec2(1.0 / c.texture.x, 1.0 / c.texture.y);
@@ -22,7 +23,7 @@ PassWork ResolvePass::run(const Plan& plan, const gl::Texture2D& cascade, const 
     cascade.bind_texture(glsl::kResolveCascadeUnit);
     out.bind_image(glsl::kResolveImageBinding, GL_WRITE_ONLY);
     PassWork work;
-    work.dispatches = program_.dispatch(params, plan.canvas, settings.pixels);
+    work.dispatches = program_.dispatch(params, plan.lit.size, settings.pixels);
     work.bytes = out.bytes();
     return work;
 }

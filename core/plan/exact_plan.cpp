@@ -35,6 +35,8 @@ ExactPlan plan_exact(const Scene& scene, PackedOutline outline, glm::ivec2 canva
     // A sector's list is asked once for each of its edges: more pieces want narrower sectors.
     const std::size_t pieces = outline.pieces;
     plan.sectors = pieces <= 4 ? 8 : pieces <= 24 ? 16 : pieces <= 400 ? 32 : 64;
+    // What surfaces shine with changes within a sector; means over narrow ones are right.
+    if (!outline.surfaces.pieces.empty()) plan.sectors = std::max(plan.sectors, scene.render.quality == Quality::high ? 64 : 32);
     plan.first_axis = 0.0927;
     plan.coarse_tile = pieces > 48 ? 4 * glsl::kExactTile : 0;
     plan.sky_nodes = scene.sky.gradient.empty() ? 0 : 2048;

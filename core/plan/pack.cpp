@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "glsl/scene_records.h"
 
@@ -18,6 +19,39 @@ using glm::vec4;
 // Half of the shortest step of a march (glsl/lib/march.glsl): thinner, and a ray could step over it.
 constexpr double kSolidHalfThickness = 0.126;
 
+// World units squared, by the even-odd rule: rings inside of an odd number of others are holes. Of rings that cross, about.
+double polygon_area(const Polygon& polygon) {
+    struct RingArea {
+        Point from{0};
+        double twice = 0;
+        std::size_t first = 0, end = 0;
+    };
+    std::vector<RingArea> rings;
+    std::size_t first = 0;
+    for (std::size_t r = 0; r <= polygon.ring_starts.size(); ++r) {
+        const std::size_t end = r < polygon.ring_starts.size() ? polygon.ring_starts[r] : polygon.points.size();
+        if (end > first) rings.push_back({polygon.points[first], 0, first, end});
+        first = end;
+    }
+    const auto each_edge = [&](const RingArea& ring, auto visit) {
+        for (std::size_t i = ring.first; i < ring.end; ++i) visit(polygon.points[i], polygon.points[i + 1 < ring.end ? i + 1 : ring.first]);
+    };
+    for (RingArea& ring : rings)
+        each_edge(ring, [&](Point a, Point b) { ring.twice += (a.x - ring.from.x) * (b.y - ring.from.y) - (b.x - ring.from.x) * (a.y - ring.from.y); });
+    double area = 0;
+    for (const RingArea& ring : rings) {
+        bool hole = false;
+        for (const RingArea& other : rings) {
+            if (&other == &ring) continue;
+            each_edge(other, [&](Point a, Point b) {
+                if ((a.y > ring.from.y) != (b.y > ring.from.y) && ring.from.x < a.x + (ring.from.y - a.y) * (b.x - a.x) / (b.y - a.y)) hole = !hole;
+            });
+        }
+        area += (hole ? -0.5 : 0.5) * std::abs(ring.twice);
+    }
+    return std::abs(area);
+}
+
 class Packer {
 public:
     Packer(const Scene& scene, double radiance_scale) : frame_(scene.canvas), scale_(1.0 / radiance_scale) {
@@ -27,9 +61,11 @@ public:
     PackedScene take() { return std::move(packed_); }
 
 private:
-    void record(const Shape& shape, int type, double half_thickness, vec4 a, vec4 b) {
+    // A shape that is marched larger than it is shines as much less. From around, a convex shape is seen as wide as its
+    // perimeter over pi (Cauchy), and growing by g adds 2 pi g to that.
+    void record(const Shape& shape, int type, double half_thickness, double perimeter, vec4 a, vec4 b) {
         const double grow = thin_shape_growth(half_thickness);
-        const double light = half_thickness / (half_thickness + grow);
+        const double light = perimeter / (perimeter + 2 * std::numbers::pi * grow);
         const Colour e = shape.emission * scale_;
         packed_.shapes.push_back({float(type), float(grow), float(first_edge_), float(packed_.edges.size() - first_edge_)});
         packed_.shapes.push_back({float(e.r), float(e.g), float(e.b), float(light)});
@@ -55,36 +91,52 @@ private:
     void add(const Shape& shape, const Circle& g) {
         const double r = frame_.length(g.radius);
         const dvec2 c = frame_.point(g.center);
-        record(shape, glsl::kShapeCircle, r, {float(c.x), float(c.y), float(r), 0}, vec4(0));
+        record(shape, glsl::kShapeCircle, r, 2 * std::numbers::pi * r, {float(c.x), float(c.y), float(r), 0}, vec4(0));
     }
 
     void add(const Shape& shape, const Ellipse& g) {
         const dvec2 radii = g.radii * frame_.pixels_per_unit;
-        record(shape, glsl::kShapeEllipse, std::min(radii.x, radii.y), join(frame_.point(g.center), radii),
+        // Ramanujan's first formula.
+        const double perimeter = std::numbers::pi * (3 * (radii.x + radii.y) - std::sqrt((3 * radii.x + radii.y) * (radii.x + 3 * radii.y)));
+        record(shape, glsl::kShapeEllipse, std::min(radii.x, radii.y), perimeter, join(frame_.point(g.center), radii),
                join(turn(g.rotation_deg), dvec2(0)));
     }
 
     void add(const Shape& shape, const Rect& g) {
         const dvec2 half = 0.5 * g.size * frame_.pixels_per_unit;
-        record(shape, glsl::kShapeRect, std::min(half.x, half.y), join(frame_.point(g.center), half),
+        const double perimeter = 4 * (half.x + half.y) - (8 - 2 * std::numbers::pi) * frame_.length(g.corner_radius);
+        record(shape, glsl::kShapeRect, std::min(half.x, half.y), perimeter, join(frame_.point(g.center), half),
                join(turn(g.rotation_deg), dvec2(frame_.length(g.corner_radius), 0)));
     }
 
     void add(const Shape& shape, const Line& g) {
         const double half = 0.5 * frame_.length(g.width);
-        record(shape, glsl::kShapeLine, half, join(frame_.point(g.from), frame_.point(g.to)), {0, 0, float(half), 0});
+        const double perimeter = 2 * frame_.length(glm::length(g.to - g.from)) + 2 * std::numbers::pi * half;
+        record(shape, glsl::kShapeLine, half, perimeter, join(frame_.point(g.from), frame_.point(g.to)), {0, 0, float(half), 0});
     }
 
     void add(const Shape& shape, const Polyline& g) {
-        const vec4 box = add_edges(g.points, g.closed);
+        const vec4 box = add_stroke(g.points, g.closed);
         const double half = 0.5 * frame_.length(g.width);
-        record(shape, glsl::kShapePolyline, half, box, {0, 0, float(half), 0});
+        double length = 0;
+        for (std::size_t i = first_edge_; i < packed_.edges.size(); ++i) {
+            const vec4& e = packed_.edges[i];
+            length += std::hypot(double(e.z) - double(e.x), double(e.w) - double(e.y));
+        }
+        record(shape, glsl::kShapePolyline, half, 2 * length + 2 * std::numbers::pi * half, box, {0, 0, float(half), 0});
     }
 
     void add(const Shape& shape, const Polygon& g) {
-        const vec4 box = add_edges(g.points, true);
-        // How thick a polygon is where it is thinnest is not known: it is marched as it is.
-        record(shape, glsl::kShapePolygon, kSolidHalfThickness, box, vec4(0));
+        Box box;
+        for_each_edge(g, [&](Point a, Point b) { add_edge(a, b, box); });
+        double perimeter = 0;
+        for (std::size_t i = first_edge_; i < packed_.edges.size(); ++i) {
+            const vec4& e = packed_.edges[i];
+            perimeter += std::hypot(double(e.z) - double(e.x), double(e.w) - double(e.y));
+        }
+        // How thick a polygon is where it is thinnest is not known; how thick it is on the whole is: a sliver is held.
+        const double area = polygon_area(g) * frame_.pixels_per_unit * frame_.pixels_per_unit;
+        record(shape, glsl::kShapePolygon, area / perimeter, perimeter, join(box.lo, box.hi), vec4(0));
     }
 
     void add(const Shape& shape, const Bitmap& g) {
@@ -99,26 +151,31 @@ private:
         }
         // Half way between the last alpha that is free and the first that is solid.
         const double threshold = (std::ceil(g.solid_above * 255.0 - 1e-9) - 0.5) / 255.0;
-        record(shape, glsl::kShapeBitmap, kSolidHalfThickness,
+        record(shape, glsl::kShapeBitmap, kSolidHalfThickness, 1,
                join(frame_.point(g.position), g.size * frame_.pixels_per_unit),
                {float(first), float(image.width), float(image.height), float(threshold)});
         packed_.shapes[packed_.shapes.size() - 3].w = float(g.as_albedo ? 0.0 : g.emission_scale * scale_);
     }
 
-    vec4 add_edges(const std::vector<Point>& points, bool closed) {
-        dvec2 lo(1e300);
-        dvec2 hi(-1e300);
-        const auto edge = [&](Point from, Point to) {
-            const dvec2 a = frame_.point(from);
-            const dvec2 b = frame_.point(to);
-            packed_.edges.push_back(join(a, b));
-            lo = glm::min(lo, glm::min(a, b));
-            hi = glm::max(hi, glm::max(a, b));
-        };
-        if (points.size() == 1) edge(points[0], points[0]);
-        for (std::size_t i = 0; i + 1 < points.size(); ++i) edge(points[i], points[i + 1]);
-        if (closed && points.size() > 1) edge(points.back(), points.front());
-        return join(lo, hi);
+    struct Box {
+        dvec2 lo{1e300};
+        dvec2 hi{-1e300};
+    };
+
+    void add_edge(Point from, Point to, Box& box) {
+        const dvec2 a = frame_.point(from);
+        const dvec2 b = frame_.point(to);
+        packed_.edges.push_back(join(a, b));
+        box.lo = glm::min(box.lo, glm::min(a, b));
+        box.hi = glm::max(box.hi, glm::max(a, b));
+    }
+
+    vec4 add_stroke(const std::vector<Point>& points, bool closed) {
+        Box box;
+        if (points.size() == 1) add_edge(points[0], points[0], box);
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) add_edge(points[i], points[i + 1], box);
+        if (closed && points.size() > 1) add_edge(points.back(), points.front(), box);
+        return join(box.lo, box.hi);
     }
 
     PixelFrame frame_;

@@ -68,7 +68,8 @@ Kind kind_of(const Piece& piece) {
 // same light, as the round end of a stroke does. A whole circle is one entry that is cheap to ask, and hides more.
 class WholeCircles {
 public:
-    explicit WholeCircles(const reference::Boundary& boundary) : boundary_(boundary) {
+    WholeCircles() = default;
+    explicit WholeCircles(const reference::Boundary& boundary) : boundary_(&boundary) {
         // Which lights meet at each corner.
         for (const Piece& piece : boundary.pieces()) {
             if (piece.is_full) continue;
@@ -109,7 +110,7 @@ private:
 
     bool same_light(int a, int b) const {
         if (a == kMixed || b == kMixed) return false;
-        const auto& all = boundary_.materials();
+        const auto& all = boundary_->materials();
         return all[std::size_t(a)].emission == all[std::size_t(b)].emission;
     }
     Key corner(Point p) const { return {at(p.x), at(p.y), 0}; }
@@ -118,12 +119,80 @@ private:
     }
     // Coordinates within rounding of one another fall together, but for those on a border, which stay apart: then the arcs
     // are kept.
-    std::int64_t at(double v) const { return std::llround(v / (64 * boundary_.tolerance())); }
+    std::int64_t at(double v) const { return std::llround(v / (64 * boundary_->tolerance())); }
 
-    const reference::Boundary& boundary_;
+    const reference::Boundary* boundary_ = nullptr;
     std::map<Key, int> corners_;
     std::map<Key, std::vector<std::size_t>> circles_;
     std::set<std::size_t> members_, firsts_;
+};
+
+// Cuts the pieces of a scene that reflects into elements.
+class SurfaceMaker {
+public:
+    SurfaceMaker(const Scene& scene, const PixelFrame& frame, const reference::Boundary& boundary) : frame_(frame), boundary_(boundary) {
+        double length = 0;
+        for (const Piece& piece : boundary.pieces())
+            if (boundary.material_of(piece).albedo != Colour(0)) length += course_of(piece).length;
+        size_ = std::max(element_size(scene.render.quality), 2 * length / kMostNodes);
+    }
+
+    void add(const Piece& piece, glm::vec4 ends, double radiance_scale) {
+        const reference::Material& material = boundary_.material_of(piece);
+        const SurfaceCourse course = course_of(piece);
+        const bool reflects = material.albedo != Colour(0);
+        const int count = reflects ? element_count(course, size_) : 1;
+        made_.pieces.emplace_back(float(made_.elements), float(course.whole ? -count : count), float(course.start_angle), float(course.sweep));
+        made_.materials.emplace_back(glm::vec3(material.emission / radiance_scale), 0.0f);
+        made_.materials.emplace_back(glm::vec3(0.5 * material.albedo), 0.0f);
+        for (int i = 0; i < count && reflects; ++i) {
+            const double u = 0.5 * (element_start(i, count, course.whole) + element_start(i + 1, count, course.whole));
+            const double t = piece.t0 + u * (piece.t1 - piece.t0);
+            glm::dvec2 at = frame_.point(piece.at(t));
+            // Between the corners as they are packed.
+            if (!piece.is_arc) at = glm::dvec2(ends.x, ends.y) * (1 - u) + glm::dvec2(ends.z, ends.w) * u;
+            const Point normal = reference::turned(piece.tangent(t)) / std::sqrt(reference::length_squared(piece.tangent(t)));
+            // Off the surface by some units in the last place, for a surface does not shade itself.
+            const double off = std::max(kOff, 8 * 6e-8 * std::max(std::abs(at.x), std::abs(at.y)));
+            const glm::dvec2 place = at + off * normal;
+            const auto end_of = [&](int element) {
+                return frame_.point(piece.at(piece.t0 + element_start(element, count, course.whole) * (piece.t1 - piece.t0)));
+            };
+            made_.nodes.push_back({glm::vec4(glm::vec2(place), glm::vec2(normal)), glm::vec2(end_of(i + 1) - end_of(i)), static_cast<std::uint32_t>(made_.elements) + static_cast<std::uint32_t>(i)});
+        }
+        made_.elements += static_cast<std::size_t>(count) + 1;
+    }
+
+    Surfaces take() { return std::move(made_); }
+
+private:
+    static constexpr double kMostNodes = 400'000;
+    static constexpr double kOff = 1e-3;  // px
+
+    SurfaceCourse course_of(const Piece& piece) const {
+        SurfaceCourse course;
+        course.whole = piece.is_full;
+        double units = 0;
+        constexpr int kChords = 32;
+        const int chords = piece.is_arc ? kChords : 1;
+        for (int i = 0; i < chords; ++i) {
+            const auto at = [&](int k) { return piece.at(piece.t0 + (piece.t1 - piece.t0) * k / chords); };
+            units += std::sqrt(reference::length_squared(at(i + 1) - at(i)));
+        }
+        course.length = frame_.length(units);
+        if (piece.is_arc) {
+            // Circles are asked by the angle on screen, ellipses by that of their own frame.
+            course.start_angle = piece.t0;
+            if (is_round(piece)) course.start_angle += std::atan2(piece.u.y, piece.u.x);
+            course.sweep = piece.t1 - piece.t0;
+        }
+        return course;
+    }
+
+    const PixelFrame& frame_;
+    const reference::Boundary& boundary_;
+    double size_ = 1;
+    Surfaces made_;
 };
 
 // Points of the view along each axis that a survey looks from.
@@ -150,11 +219,11 @@ double survey_intervals(const Scene& scene, const reference::Boundary& boundary)
     return points > 0 ? intervals / points : 0;
 }
 
-// Extent (world units) of the smallest body, of those that emit or of all.
-double smallest_body(const reference::Boundary& boundary, bool only_lights) {
+// Extent (world units) of the smallest light: of what is seen of each body.
+double smallest_light(const reference::Boundary& boundary) {
     std::map<int, reference::Box> boxes;
     for (const Piece& piece : boundary.pieces()) {
-        if (only_lights && boundary.material_of(piece).emission == Colour(0)) continue;
+        if (boundary.material_of(piece).emission == Colour(0)) continue;
         const reference::Box box = piece.box();
         reference::Box& all = boxes[piece.body];
         all.add(box.low);
@@ -165,9 +234,27 @@ double smallest_body(const reference::Boundary& boundary, bool only_lights) {
     return boxes.empty() ? 0 : smallest;
 }
 
+// Extent (world units) of the smallest shape of which anything is seen: all of it, since what hides a part of it hides as much.
+double smallest_body(const reference::Boundary& boundary) {
+    std::map<int, reference::Box> boxes;
+    for (const reference::Body& body : boundary.bodies()) {
+        reference::Box& all = boxes[body.shape];
+        all.add(body.box.low);
+        all.add(body.box.high);
+    }
+    std::set<int> seen;
+    for (const Piece& piece : boundary.pieces()) seen.insert(boundary.bodies()[std::size_t(piece.body)].shape);
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const int shape : seen) {
+        const reference::Box& box = boxes[shape];
+        smallest = std::min(smallest, std::max(box.high.x - box.low.x, box.high.y - box.low.y));
+    }
+    return seen.empty() ? 0 : smallest;
+}
+
 }  // namespace
 
-PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool survey, std::size_t most_pieces) {
+PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool survey, std::size_t most_pieces, bool reflecting) {
     const reference::Boundary boundary(scene, most_pieces, false);
     PackedOutline out;
     if (!boundary.problems().empty()) {
@@ -178,10 +265,12 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
     Corners corners(frame);
     const double scale = frame.pixels_per_unit;
     const auto vec = [](glm::dvec2 a, glm::dvec2 b) { return glm::vec4(glm::vec2(a), glm::vec2(b)); };
-    out.smallest_light = smallest_body(boundary, true) * scale;
-    out.smallest_body = smallest_body(boundary, false) * scale;
+    out.smallest_light = smallest_light(boundary) * scale;
+    out.smallest_body = smallest_body(boundary) * scale;
     if (survey) out.mean_intervals = survey_intervals(scene, boundary);
-    const WholeCircles whole(boundary);
+    // Elements lie on what can be seen: nothing is taken whole that is not.
+    const WholeCircles whole = reflecting ? WholeCircles() : WholeCircles(boundary);
+    SurfaceMaker surfaces(scene, frame, boundary);
     // Kind by kind, what emits first.
     for (const Kind kind : {Kind::straight, Kind::disc, Kind::arc, Kind::ellipse}) {
         for (const bool emits : {true, false}) {
@@ -190,7 +279,8 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
                 const reference::Material& material = boundary.material_of(piece);
                 if (whole.is_part(i) && !whole.is_first(i)) continue;
                 const Kind own = whole.is_part(i) ? Kind::disc : kind_of(piece);
-                if (own != kind || (material.emission != Colour(0)) != emits) continue;
+                const bool shines = material.emission != Colour(0) || (reflecting && material.albedo != Colour(0));
+                if (own != kind || shines != emits) continue;
                 const glm::vec4 ends(piece.is_full ? glm::vec2(0) : corners.at(piece.a),
                                      piece.is_full ? glm::vec2(0) : corners.at(piece.b));
                 const glm::dvec2 centre = frame.point(piece.center);
@@ -212,6 +302,7 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
                 }
                 out.lights_of.resize(out.entries.size(), glm::vec4(glm::vec3(material.emission / radiance_scale),
                                                                    static_cast<float>(out.pieces)));
+                if (reflecting) surfaces.add(piece, ends, radiance_scale);
                 ++out.pieces;
                 ++out.counts[static_cast<std::size_t>(kind)];
                 if (emits) ++out.lights[static_cast<std::size_t>(kind)];
@@ -219,17 +310,31 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
         }
     }
     for (const int count : out.lights) out.emitting += static_cast<std::size_t>(count);
+    if (reflecting) out.surfaces = surfaces.take();
     return out;
 }
 
 std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scale) {
     const reference::SkyIntegral integral(sky);
+    // Which of the sky's parts between its steps each direction lies in. A single step needs a second border, at angle 0, to
+    // have two parts.
+    std::vector<double> steps;
+    for (std::size_t i = 0; i < sky.gradient.size(); ++i) {
+        const SkyStop& stop = sky.gradient[i];
+        const SkyStop& next = sky.gradient[(i + 1) % sky.gradient.size()];
+        const double turn = i + 1 < sky.gradient.size() ? 0 : 360;
+        if (next.angle_deg + turn == stop.angle_deg && next.radiance != stop.radiance) steps.push_back(std::fmod(stop.angle_deg, 360.0));
+    }
+    const auto part = [&](double degrees) {
+        const auto before = std::count_if(steps.begin(), steps.end(), [&](double at) { return at <= degrees; });
+        return static_cast<float>(steps.size() > 1 ? before % std::ptrdiff_t(steps.size()) : before);
+    };
     std::vector<glm::vec4> table;
     const double step = 2 * std::numbers::pi / nodes;
     Colour sum(0);
     for (int i = 0; i <= nodes; ++i) {
         table.push_back(glm::vec4(glm::vec3(sum / radiance_scale), 0.0f));
-        table.push_back(glm::vec4(glm::vec3(integral.radiance(i * step) / radiance_scale), 0.0f));
+        table.push_back(glm::vec4(glm::vec3(integral.radiance(i * step) / radiance_scale), part(360.0 * (i % nodes) / nodes)));
         sum += integral.integral(i * step, step);
     }
     return table;

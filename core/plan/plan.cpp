@@ -5,10 +5,15 @@
 #include <cmath>
 #include <numbers>
 
+#include <glm/common.hpp>
+
 #include "core/device_error.h"
 #include "core/plan/choose.h"
 #include "core/plan/pack.h"
+#include "core/plan/saving.h"
+#include "core/plan/skip.h"
 #include "core/plan/sky.h"
+#include "core/scene/words.h"
 #include "glsl/scene_records.h"
 
 namespace penumbra {
@@ -53,6 +58,15 @@ ReferencePlan plan_reference(const Scene& scene, const DeviceLimits& limits) {
                           std::to_string(limits.max_loop_iterations) + " iterations.");
     plan.rays_per_dispatch = static_cast<int>(std::clamp<std::size_t>(most / cost, 1, static_cast<std::size_t>(plan.rays)));
     return plan;
+}
+
+// Whether light bounces anywhere.
+bool reflects(const Scene& scene) {
+    if (scene.render.bounces == 0) return false;
+    return std::any_of(scene.shapes.begin(), scene.shapes.end(), [](const Shape& shape) {
+        const auto* bitmap = std::get_if<Bitmap>(&shape.geometry);
+        return bitmap != nullptr ? bitmap->as_albedo : shape.albedo != Colour(0);
+    });
 }
 
 double brightest_emission(const Shape& shape) {
@@ -177,6 +191,49 @@ std::vector<CascadePlan> plan_cascades(glm::ivec2 canvas, double diagonal_px, co
     return cascades;
 }
 
+std::size_t leave_out_far(std::vector<CascadePlan>& cascades, const Extent& matters, double diagonal_px) {
+    // A ray is judged by its distance to a surface when that is less than this (glsl/lib/march.glsl, kNear).
+    constexpr double kNearSurface = 2;
+    std::size_t left_out = 0;
+    while (cascades.size() > 1) {
+        const CascadePlan& last = cascades.back();
+        double farthest = 0;
+        for (const CascadePlan* c : {&last, static_cast<const CascadePlan*>(&cascades[cascades.size() - 2])}) {
+            if (matters.empty()) break;
+            const glm::dvec2 low = c->first_probe;
+            const glm::dvec2 high = low + glm::dvec2(c->probes - 1) * c->spacing;
+            const double x = std::max(matters.x1 - low.x, high.x - matters.x0);
+            const double y = std::max(matters.y1 - low.y, high.y - matters.y0);
+            farthest = std::max(farthest, std::hypot(x, y));
+        }
+        if (!matters.empty() && last.start < farthest + kNearSurface) break;
+        cascades.pop_back();
+        cascades.back().end = std::max(cascades.back().end, diagonal_px);
+        ++left_out;
+    }
+    return left_out;
+}
+
+void keep_probes_near(std::vector<CascadePlan>& cascades, const PixelArea& lit) {
+    // Centres of what asks: pixels first, then the probes below.
+    glm::dvec2 low = glm::dvec2(lit.first) + 0.5;
+    glm::dvec2 high = glm::dvec2(lit.end()) - 0.5;
+    for (CascadePlan& c : cascades) {
+        glm::ivec2 from = lit.first;
+        glm::ivec2 to = lit.end() - 1;
+        if (c.level > 0 || c.spacing != 1.0) {
+            // The two on either side, and one more for rounding.
+            from = glm::max(glm::ivec2(glm::floor((low - c.first_probe) / c.spacing)) - 1, glm::ivec2(0));
+            to = glm::min(glm::ivec2(glm::ceil((high - c.first_probe) / c.spacing)) + 1, c.probes - 1);
+        }
+        c.first_probe += glm::dvec2(from) * c.spacing;
+        c.probes = to - from + 1;
+        c.texture = c.probes * c.tiles;
+        low = c.first_probe;
+        high = low + glm::dvec2(c.probes - 1) * c.spacing;
+    }
+}
+
 std::vector<int> plan_jumps(glm::ivec2 grid) {
     std::vector<int> steps;
     int step = 1;
@@ -204,10 +261,47 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     plan.grid = plan_grid(scene.canvas);
     plan.method = scene.render.method;
     plan.method_reason = "asked for";
+    const bool reflecting = reflects(scene);
+    const PixelRect region = scene.canvas.region_or_all();
+    plan.shown = {{region.x, region.y}, {region.w, region.h}};
+    plan.lit.first = glm::max(plan.shown.first - 1, glm::ivec2(0));
+    plan.lit.size = glm::min(plan.shown.end() + 1, plan.canvas) - plan.lit.first;
+    // What these show depends on more than what is shown: a part stays what it is of the whole.
+    if (scene.output.solids == Solids::lit || scene.output.auto_key || scene.render.view != "final") plan.lit = {{0, 0}, plan.canvas};
+    const bool in_part = area(plan.lit.size) < area(plan.canvas);
+    plan.end_distance_row = plan.grid.size.y;
+    // What the picture depends on alone, so that its limits hold whatever is skipped.
+    const std::size_t row_bytes = static_cast<std::size_t>(plan.shown.size.x) * (scene.output.format != "png" ? 16 : bit_depth_of("png", scene.output.bit_depth) / 2);
+    // Linear pictures of 8192 x 8192 would be a GiB at once, more than llvmpipe holds in a texture.
+    plan.band_rows = static_cast<int>(std::clamp<std::size_t>(kBandBytes / row_bytes, 1, static_cast<std::size_t>(plan.shown.size.y)));
+    check_size(plan.grid.size, 4, limits, "distance field");
+    const double pixels = double(area(plan.canvas));
+    const double grid_pixels = double(area(plan.grid.size));
+    // `render.skip: "none"` runs what the scene does not need as well, for comparison.
+    const auto skip = [&](Saving saving) { return saves(scene.render, saving); };
+    const auto leave_out = [&](std::string what, std::string why, double saved) {
+        plan.skipped.push_back({std::move(what), std::move(why), saved});
+    };
+    // A view looks at what a constant picture has not, and dither differs from pixel to pixel.
+    const bool may_be_constant = scene.render.view == "final" && (scene.output.dither == Dither::none || scene.output.format != "png");
+    if (std::optional<ConstantLight> light = may_be_constant ? constant_light(scene) : std::nullopt) {
+        if (plan.method == "auto") {
+            plan.method = "exact";
+            plan.method_reason = "every pixel is the same, whatever the method";
+        }
+        plan.constant = light->mean_radiance;
+        leave_out("all passes", light->why, double(area(plan.shown.size)));
+        return plan;
+    }
     PackedOutline outline;
     if (plan.method == "auto") {
-        outline = pack_outline(scene, 1.0, true, most_surveyed_pieces());
-        const MethodChoice choice = not_exact.empty() ? choose_method(outline, scene.render.quality) : MethodChoice{"hrc", not_exact};
+        outline = pack_outline(scene, 1.0, true, most_surveyed_pieces(), reflecting);
+        if (reflecting && !(outline.fits && not_exact.empty()))
+            throw DeviceError("The scene is too dense for bounces, which only the method 'exact' has: " +
+                              (not_exact.empty() ? "its outline has more than " + std::to_string(most_surveyed_pieces()) + " pieces." : not_exact));
+        const MethodChoice choice = !not_exact.empty() ? MethodChoice{"hrc", not_exact}
+                                    : reflecting       ? MethodChoice{"exact", "surfaces reflect"}
+                                                       : choose_method(outline, scene.render.quality);
         plan.method = choice.method;
         plan.method_reason = choice.reason;
         if (plan.method == "hrc" && !hrc_fits(scene, plan.canvas, limits)) {
@@ -215,7 +309,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
             plan.method_reason += "; too large a picture for hrc on this device";
         }
     } else if (plan.method == "exact") {
-        outline = pack_outline(scene, 1.0, false, kMostPieces);
+        outline = pack_outline(scene, 1.0, false, kMostPieces, reflecting);
         if (!outline.fits)
             throw DeviceError("The method 'exact' cannot take this scene: its outline has more than " +
                               std::to_string(kMostPieces) + " pieces.");
@@ -232,26 +326,32 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         has_bitmaps = has_bitmaps || std::holds_alternative<Bitmap>(shape.geometry);
     }
 
-    // `render.skip: "none"` runs what the scene does not need as well, for comparison; the picture is the same.
-    const bool skip = scene.render.skip == Skip::all;
-    const double pixels = double(area(plan.canvas));
-    const double grid_pixels = double(area(plan.grid.size));
-    const auto leave_out = [&](std::string what, std::string why, double saved) {
-        plan.skipped.push_back({std::move(what), std::move(why), saved});
-    };
-
+    if (skip(Saving::programs)) {
+        plan.needs = {false, false, false, false};
+        for (const Shape& shape : scene.shapes) {
+            const Geometry& g = shape.geometry;
+            plan.needs.ellipses = plan.needs.ellipses || std::holds_alternative<Ellipse>(g);
+            plan.needs.outlines = plan.needs.outlines || std::holds_alternative<Polyline>(g) || std::holds_alternative<Polygon>(g);
+            plan.needs.bitmaps = plan.needs.bitmaps || std::holds_alternative<Bitmap>(g);
+        }
+    }
+    if (!plan.needs.general) {
+        const int kinds = 3 - int(plan.needs.ellipses) - int(plan.needs.outlines) - int(plan.needs.bitmaps);
+        const int curves = scene.output.format == "png" ? 5 : 0;
+        if (kinds + curves > 0) leave_out("branches", "programs are made for the shapes and the tone curve that the scene has", kinds + curves);
+    }
     plan.shape_slices = slice_shapes(scene.shapes);
     if (plan.shape_slices.empty()) {
-        if (skip)
+        if (skip(Saving::distance))
             leave_out("distance pass", "the scene has no shapes: every distance is the diagonal", grid_pixels);
         else
             plan.shape_slices.push_back({0, 0});
     }
-    plan.list_shapes = skip && scene.shapes.size() >= kFewestListedShapes;
+    plan.list_shapes = skip(Saving::lists) && scene.shapes.size() >= kFewestListedShapes;
     const std::vector<int> jumps = plan_jumps(plan.grid.size);
     if (brute_force)
         leave_out("jump flooding", "rays meet bitmaps texel by texel", grid_pixels * double(jumps.size()));
-    else if (!has_bitmaps && skip)
+    else if (!has_bitmaps && skip(Saving::flooding))
         leave_out("jump flooding", "the scene has no bitmaps", grid_pixels * double(jumps.size()));
     else
         plan.jump_steps = jumps;
@@ -265,18 +365,37 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         plan.hrc = plan_hrc(plan.canvas, scene.canvas.margin / scene.canvas.pixel_size(), hrc_settings(scene.render.quality));
     else
         plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
-    if (peak <= 0 && skip) {
+    plan.exact.bounces = exact && reflecting ? scene.render.bounces : 0;
+    plan.exact.converged = scene.render.converged ? scene.render.tolerance : 0;
+    if (scene.render.bounces > 0 && !reflecting) leave_out("bounces", "no surface reflects", double(scene.render.bounces));
+    plan.delta.lights = pack_lights(scene);
+    if (plan.delta.used() && !exact) {
+        plan.delta.outline = pack_outline(scene, 1.0, false, kMostPieces);
+        if (!plan.delta.outline.fits)
+            throw DeviceError("The shadows of point, spot and directional lights need the scene's outline, which has more than " +
+                              std::to_string(kMostPieces) + " pieces.");
+    }
+    // Lights without a size are added for themselves, but what they light may light other things.
+    if (peak <= 0 && plan.delta.used() && plan.exact.bounces == 0 && skip(Saving::constant)) {
         const double levels = holographic ? double(plan.hrc.quadrants.front().levels.size()) : double(plan.cascades.size());
         const double rays = brute_force ? plan.reference.rays : exact ? 1.0 : (plan.bilinear_fix ? 16.0 : 4.0) * levels;
-        leave_out(brute_force ? "rays" : exact ? "points" : holographic ? "ray pieces" : "cascades", "nothing emits light",
-                  pixels * rays);
+        leave_out(brute_force ? "rays" : exact ? "points" : holographic ? "ray pieces" : "cascades",
+                  "nothing shines but lights without a size", pixels * rays);
         plan.cascades.clear();
         plan.reference = {};
+        if (exact) plan.delta.outline = std::move(plan.exact.outline);
         plan.exact = {};
         plan.hrc = {};
     }
+    // The beams of rc_fix's last cascade differ from the rays of those below it, so that another may not take its place.
+    if (!plan.cascades.empty() && !plan.bilinear_fix && skip(Saving::levels)) {
+        const bool dark_sky = brightest(scene.sky) <= 0;
+        const double levels = static_cast<double>(leave_out_far(plan.cascades, extent_of_shapes(scene, dark_sky), plan.grid.diagonal_px));
+        if (levels > 0) leave_out("cascades", dark_sky ? "no light is as far away" : "no shape is as far away", 4.0 * pixels * levels / (settings.spacing_px * settings.spacing_px));
+    }
+    if (exact && !skip(Saving::cells)) plan.exact.settings.largest_cell = 1;
     const bool resolved = settings.spacing_px == 1.0 && settings.base_tiles == 1;
-    plan.resolve = !plan.cascades.empty() && !(resolved && skip);
+    plan.resolve = !plan.cascades.empty() && !(resolved && skip(Saving::resolve));
     if (!plan.resolve && !plan.cascades.empty())
         leave_out("resolve", "cascade 0 is the mean radiance of each pixel", pixels);
 
@@ -286,19 +405,29 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     if (plan.half_floats) plan.radiance_scale = peak > 0 ? peak : 1.0;
     for (glm::vec4& light : plan.exact.outline.lights_of)
         light = glm::vec4(glm::vec3(light) / static_cast<float>(plan.radiance_scale), light.a);
+    for (std::size_t i = 0; i < plan.exact.outline.surfaces.materials.size(); i += 2)
+        plan.exact.outline.surfaces.materials[i] /= static_cast<float>(plan.radiance_scale);
     const std::size_t texel = plan.half_floats ? 8 : 16;
-    check_size(plan.grid.size, 4, limits, "distance field");
+    if (in_part) {
+        keep_probes_near(plan.cascades, plan.lit);
+        largest_area = area(plan.lit.size);
+        for (const CascadePlan& c : plan.cascades) largest_area = std::max(largest_area, area(c.texture));
+        // Of the bands that are solved, every tile's corner is: their mean is what tolerances are relative to.
+        if (exact && plan.jump_steps.empty()) {
+            const int band = plan.exact.band_rows;
+            plan.first_distance_row = plan.lit.first.y / band * band + plan.grid.border.y;
+            plan.end_distance_row = std::min((plan.lit.end().y + band - 1) / band * band + 1, plan.canvas.y) + plan.grid.border.y;
+        }
+    }
     for (const CascadePlan& c : plan.cascades) check_size(c.texture, texel, limits, "cascade");
 
-    // Linear pictures of 8192 x 8192 would be a GiB at once, more than llvmpipe holds in a texture.
-    const std::size_t row_bytes = static_cast<std::size_t>(plan.canvas.x) * (scene.output.format == "png" ? 4 : 16);
-    plan.band_rows = static_cast<int>(std::clamp<std::size_t>(kBandBytes / row_bytes, 1, static_cast<std::size_t>(plan.canvas.y)));
     plan.gpu_bytes = 8 * area(plan.grid.size) + row_bytes * static_cast<std::size_t>(plan.band_rows);
     if (!plan.jump_steps.empty()) plan.gpu_bytes += 8 * area(plan.grid.size);
     if (!plan.cascades.empty()) plan.gpu_bytes += 2 * largest_area * texel;
-    if (plan.reference.rays > 0) plan.gpu_bytes += 16 * area(plan.canvas);
-    if (plan.resolve) plan.gpu_bytes += area(plan.canvas) * texel;
-    if (plan.exact.used) plan.gpu_bytes += area(plan.canvas) * texel + exact_bytes(plan.exact, plan.canvas);
+    if (plan.reference.rays > 0) plan.gpu_bytes += 16 * area(plan.lit.size);
+    if (plan.resolve) plan.gpu_bytes += area(plan.lit.size) * texel;
+    if (plan.exact.used) plan.gpu_bytes += area(plan.lit.size) * texel + exact_bytes(plan.exact, plan.canvas);
+    if (plan.delta.used()) plan.gpu_bytes += 16 * area(plan.lit.size);
     if (plan.hrc.active()) fit_hrc(plan, peak, limits);
     return plan;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,10 @@
 #include <glm/vec2.hpp>
 
 #include "core/plan/device_limits.h"
+#include "core/plan/delta.h"
 #include "core/plan/exact_plan.h"
 #include "core/plan/hrc.h"
+#include "core/plan/skip.h"
 #include "core/render_stats.h"
 #include "core/scene/scene.h"
 
@@ -20,6 +23,13 @@ namespace penumbra {
 // A box in pixels of the view: (0, 0) is the view's top left corner.
 struct PixelBox {
     double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+// A part of the canvas, in pixels.
+struct PixelArea {
+    glm::ivec2 first{0};
+    glm::ivec2 size{0};
+    glm::ivec2 end() const { return first + size; }
 };
 
 // The grid of the distance field: the view and its margin, in whole pixels.
@@ -66,11 +76,25 @@ struct ReferencePlan {
     std::size_t tests_per_ray = 1;  // loop iterations of one ray, at most
 };
 
+// What programs must be made for. Mesa 22 runs both sides of every branch, so that each kind that a scene has not costs.
+struct ProgramNeeds {
+    bool general = true;  // for anything
+    bool ellipses = true;
+    bool outlines = true;  // polylines and polygons
+    bool bitmaps = true;
+};
+
 struct Plan {
     std::string method;
     std::string method_reason;
     glm::ivec2 canvas{0};
+    PixelArea shown;                    // the part of the canvas that becomes the picture
+    PixelArea lit;                      // the pixels whose light is worked out: those shown and what their edges mix with
     GridPlan grid;
+    int first_distance_row = 0;         // of the grid: distances are found from here
+    int end_distance_row = 0;           // to here
+    ProgramNeeds needs;
+    std::optional<Colour> constant;     // mean radiance of every pixel: no pass runs but the picture's
     std::vector<ShapeSlice> shape_slices;
     bool list_shapes = false;           // per tile of the grid: each pixel asks its tile's shapes only
     std::vector<int> jump_steps;        // of jump flooding, empty without bitmaps
@@ -79,6 +103,7 @@ struct Plan {
     ReferencePlan reference;
     ExactPlan exact;                    // of the method `exact`
     HrcPlan hrc;                        // inactive unless this method runs
+    DeltaPlan delta;                    // point, spot and directional lights
     bool resolve = false;               // false: cascade 0 already is the mean radiance per pixel
     bool half_floats = false;           // cascades in 16 bits, emission scaled to [0, 1]
     double radiance_scale = 1;          // emission is divided by this before it is packed
@@ -104,13 +129,21 @@ int reference_rays(Quality quality);
 // The cascades that cover a domain of this diagonal. n = ceil(log4(1 + 3 D / t0)): errata E-3, E-10.
 std::vector<CascadePlan> plan_cascades(glm::ivec2 canvas, double diagonal_px, const CascadeSettings& settings);
 
+// Leaves out the last cascades where none of their rays, nor those of the one that becomes the last, can meet what matters
+// (what shines; under a sky, any shape): those see the sky or nothing. Returns how many.
+std::size_t leave_out_far(std::vector<CascadePlan>& cascades, const Extent& matters, double diagonal_px);
+
+// Leaves out the probes that no pixel of `lit` asks, directly or through the cascades below.
+void keep_probes_near(std::vector<CascadePlan>& cascades, const PixelArea& lit);
+
 // Steps of jump flooding over a grid: halving from the largest power of two below its longer side to 1, then
 // twice 1 more (JFA+2: plain flooding is wrong at a few pixels).
 std::vector<int> plan_jumps(glm::ivec2 grid);
 
 GridPlan plan_grid(const Canvas& canvas);
 
-// Precondition: validate(scene) and unsupported(scene) are empty.
+// Precondition: validate(scene) and unsupported(scene) are empty. Shapes that nothing sees are left out before
+// (core/plan/skip.h).
 // `not_exact`: why `auto` may not take the method `exact` for this scene; empty: it may.
 // Throws DeviceError when the device cannot hold the picture.
 Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string& not_exact = {});

@@ -24,7 +24,8 @@ constexpr std::size_t kShortList = 1;
 // surely farther than another, everywhere in the square, and covers none of it.
 class Lister {
 public:
-    Lister(const PackedScene& scene, const GridPlan& grid) : scene_(scene), grid_(grid) {
+    Lister(const PackedScene& scene, const GridPlan& grid, int first_row, int end_row)
+        : scene_(scene), grid_(grid), first_row_(first_row), end_row_(end_row > 0 ? end_row : grid.size.y) {
         constexpr int tile = glsl::kDistanceTile;
         lists_.tiles = (grid.size + tile - 1) / tile;
         lists_.ranges.resize(lists_.tile_count());
@@ -48,6 +49,7 @@ public:
 private:
     void visit(glm::ivec2 first, int side, const std::vector<int>& candidates) {
         if (first.x >= lists_.tiles.x || first.y >= lists_.tiles.y || lists_.shapes.size() > kMostEntries) return;
+        if (first.y * glsl::kDistanceTile >= end_row_ || (first.y + side) * glsl::kDistanceTile <= first_row_) return;
         const std::vector<int> kept = keep(first, side, candidates);
         if (side > 1 && kept.size() > kShortList) {
             const int half = side / 2;
@@ -117,14 +119,15 @@ private:
     using vec4 = glm::vec4;
     const PackedScene& scene_;
     const GridPlan& grid_;
+    int first_row_, end_row_;
     std::vector<double> lows_;
     ShapeLists lists_;
 };
 
 }  // namespace
 
-ShapeLists list_shapes(const PackedScene& scene, const GridPlan& grid) {
-    Lister lister(scene, grid);
+ShapeLists list_shapes(const PackedScene& scene, const GridPlan& grid, int first_row, int end_row) {
+    Lister lister(scene, grid, first_row, end_row);
     if (lister.run()) return lister.take();
     return {};
 }

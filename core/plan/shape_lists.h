@@ -24,7 +24,8 @@ struct ShapeLists {
     std::size_t tile_count() const { return static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y); }
 };
 
-ShapeLists list_shapes(const PackedScene& scene, const GridPlan& grid);
+// Tiles outside the rows from `first_row` to `end_row` of the grid get none (0: to its end).
+ShapeLists list_shapes(const PackedScene& scene, const GridPlan& grid, int first_row = 0, int end_row = 0);
 
 // The work that the lists save, for the statistics.
 SkippedWork saved_by_lists(const ShapeLists& lists, const PackedScene& scene, const GridPlan& grid);

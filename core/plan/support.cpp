@@ -3,20 +3,23 @@
 
 namespace penumbra {
 
-Problems unsupported(const Scene& scene) {
+Problems unsupported(const Scene& scene, const Features& features) {
     Problems problems;
     const auto refuse = [&](std::string pointer, const std::string& what) {
         problems.push_back({std::move(pointer), "not_supported_yet", what + " not supported yet"});
     };
-    if (!scene.lights.empty()) refuse("/lights", "point, spot and directional lights are");
     if (scene.render.method == "hybrid") refuse("/render/method", "the method 'hybrid' is");
-    if (scene.render.bounces != 0) refuse("/render/bounces", "bounces are");
-    if (scene.render.view != "final") refuse("/render/view", "the debug view '" + scene.render.view + "' is");
-    if (scene.output.format != "png" && scene.output.format != "pfm")
-        refuse("/output/format", "the format '" + scene.output.format + "' is");
-    if (scene.output.bit_depth != 8) refuse("/output/bit_depth", "16 bits a channel are");
-    if (scene.output.solids != Solids::emission) refuse("/output/solids", "lit solids are");
-    if (scene.output.tonemap == "tony") refuse("/output/tonemap", "the tone map 'tony' is");
+    if (scene.render.bounces != 0 && scene.render.method != "auto" && scene.render.method != "exact")
+        refuse("/render/bounces", "bounces with the method '" + scene.render.method + "' are");
+    const std::string& view = scene.render.view;
+    if (view != "final" && view != "distance" && view != "normals" && view != "tiles")
+        problems.push_back({"/render/view", "not_supported_yet",
+                            "the debug view '" + view + "' is not supported yet: there are distance, normals and tiles"});
+    else if (view != "final" && (scene.output.format != "png" || scene.output.bit_depth.value_or(8) != 8))
+        problems.push_back({"/render/view", "not_supported_yet", "a debug view comes as a PNG of 8 bits; other formats of it are not supported yet"});
+    if (scene.output.tonemap == "tony" && !features.tone_lut)
+        problems.push_back({"/output/tonemap", "not_supported_yet",
+                            "the tone map 'tony' is not supported here: its table is no part of this program (see --tony-lut)"});
     return problems;
 }
 

@@ -21,6 +21,8 @@ public:
         return materials_[std::size_t(piece.material)];
     }
     const std::vector<Material>& materials() const { return materials_; }
+    // What the pieces' `body` counts.
+    const std::vector<Body>& bodies() const { return bodies_; }
     const Box& domain() const { return domain_; }
     // Lengths below this are taken for rounding: points closer than this coincide.
     double tolerance() const { return tolerance_; }

@@ -114,17 +114,15 @@ void add_capsule(Outlines& out, Body body, Point from, Point to, double width) {
     add_piece(out, cap, index);
 }
 
-void add_polygon(Outlines& out, Body body, const std::vector<Point>& points) {
+void add_polygon(Outlines& out, Body body, const Polygon& polygon) {
     body.kind = Body::Kind::polygon;
-    body.points = points;
-    for (const Point& p : points) body.box.add(p);
+    body.polygon = polygon;
+    for (const Point& p : polygon.points) body.box.add(p);
     const int index = add_body(out, std::move(body));
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const Point a = points[i];
-        const Point b = points[(i + 1) % points.size()];
+    for_each_edge(polygon, [&](Point a, Point b) {
         // Which side is solid is found after splitting: even-odd may turn it along one edge.
         if (a != b) add_piece(out, straight_piece(a, b), index);
-    }
+    });
 }
 
 struct Adder {
@@ -156,27 +154,25 @@ struct Adder {
             add_capsule(out, made, p.points[i], p.points[i + 1], p.width);
         if (p.closed && n > 2) add_capsule(out, made, p.points[n - 1], p.points[0], p.width);
     }
-    void operator()(const Polygon& p) const { add_polygon(out, body(), p.points); }
+    void operator()(const Polygon& p) const { add_polygon(out, body(), p); }
     void operator()(const Bitmap& b) const { add_bitmap(b, index, max_pieces, out); }
 };
 
-bool polygon_contains(const std::vector<Point>& points, Point p) {
+bool polygon_contains(const Polygon& polygon, Point p) {
     bool inside = false;
-    for (std::size_t i = 0, j = points.size() - 1; i < points.size(); j = i++) {
-        const Point a = points[i];
-        const Point b = points[j];
+    bool on_outline = false;
+    for_each_edge(polygon, [&](Point a, Point b) {
         if ((a.y > p.y) == (b.y > p.y)) {
             // The outline belongs to the shape: a level edge or a vertex under the point counts.
-            if (a.y == p.y && b.y == p.y && p.x >= std::min(a.x, b.x) && p.x <= std::max(a.x, b.x))
-                return true;
-            if (p == a) return true;
-            continue;
+            const bool level = a.y == p.y && b.y == p.y && p.x >= std::min(a.x, b.x) && p.x <= std::max(a.x, b.x);
+            on_outline = on_outline || level || p == a;
+            return;
         }
         const double side = cross(b - a, p - a);
-        if (side == 0) return true;
+        on_outline = on_outline || side == 0;
         if ((side > 0) == (b.y > a.y)) inside = !inside;
-    }
-    return inside;
+    });
+    return inside || on_outline;
 }
 
 }  // namespace
@@ -270,7 +266,7 @@ bool Body::contains(Point p) const {
             return length_squared(d - axis * t) <= radius * radius;
         }
         case Kind::polygon:
-            return polygon_contains(points, p);
+            return polygon_contains(polygon, p);
         case Kind::bitmap:
             return material_at(p) >= 0;
     }

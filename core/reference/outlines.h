@@ -82,7 +82,7 @@ struct Body {
     Point inverse_u{0}, inverse_v{0};  // ellipse
     Point half_size{0};         // rect: without the corner's rounding; bitmap: size of a texel
     double radius = 0;          // capsule, rect's corner
-    std::vector<Point> points;  // polygon
+    Polygon polygon;
     int texels_x = 0, texels_y = 0;
     std::vector<std::int32_t> texel_material;  // bitmap: -1 where it is not solid
 

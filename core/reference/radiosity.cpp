@@ -353,10 +353,11 @@ Colour Gather::irradiance(Point p, Point normal, const std::vector<Interval>& se
 }
 
 bool reflect(Elements& elements, const Boundary& boundary, const SkyIntegral& sky,
-             const DeltaLights& lights, int bounces, const Refinement& refinement,
+             const DeltaLights& lights, int bounces, double converged, const Refinement& refinement,
              const Parallel& parallel) {
     const Gather gather{boundary, sky, &elements};
     std::vector<Colour> next, from_lights;
+    double brightest = 0, change = 0;
     const auto round = [&](bool is_first) {
         next.resize(elements.count());
         from_lights.resize(elements.count(), Colour(0));
@@ -370,7 +371,14 @@ bool reflect(Elements& elements, const Boundary& boundary, const SkyIntegral& sk
             next[i] = material.emission + 0.5 * material.albedo * arriving;
         });
         if (!done) return false;
-        for (std::size_t i = 0; i < next.size(); ++i) elements.all()[i].radiance = next[i];
+        brightest = change = 0;
+        for (std::size_t i = 0; i < next.size(); ++i) {
+            for (int c = 0; c < 3; ++c) {
+                brightest = std::max(brightest, next[i][c]);
+                change = std::max(change, std::abs(next[i][c] - elements.all()[i].radiance[c]));
+            }
+            elements.all()[i].radiance = next[i];
+        }
         elements.reconstruct();
         return true;
     };
@@ -382,6 +390,7 @@ bool reflect(Elements& elements, const Boundary& boundary, const SkyIntegral& sk
     elements.restart();
     for (int bounce = 0; bounce < bounces; ++bounce) {
         if (!round(bounce == 0)) return false;
+        if (change <= converged * brightest) break;
     }
     return true;
 }

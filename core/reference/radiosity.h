@@ -87,8 +87,9 @@ struct Refinement {
 // Runs `bounces` rounds of reflection. `parallel(count, body)` runs body(index, sweep) for each
 // index.
 using Parallel = std::function<bool(std::size_t, const std::function<void(std::size_t, Sweep&)>&)>;
+// `converged`: ends once no element changes by more than this share of the brightest; 0: does not.
 bool reflect(Elements& elements, const Boundary& boundary, const SkyIntegral& sky,
-             const DeltaLights& lights, int bounces, const Refinement& refinement,
+             const DeltaLights& lights, int bounces, double converged, const Refinement& refinement,
              const Parallel& parallel);
 
 }  // namespace penumbra::reference

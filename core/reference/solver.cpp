@@ -17,6 +17,7 @@
 #include "core/reference/radiosity.h"
 #include "core/reference/sky.h"
 #include "core/reference/sweep.h"
+#include "core/scene/lower.h"
 
 namespace penumbra::reference {
 
@@ -102,7 +103,7 @@ struct ExactSolver::State {
     Sweep sweep;
 
     State(const Scene& given, const SolveOptions& with)
-        : scene(given),
+        : scene(lowered(given)),
           options(with),
           boundary(scene, with.max_pieces, scene.render.bounces > 0),
           sky(scene.sky),
@@ -136,7 +137,8 @@ struct ExactSolver::State {
         pixels_share = {part, 1 - part};
         int round = 0;
         cancelled =
-            !reflect(*elements, boundary, sky, lights, bounces, refinement,
+            !reflect(*elements, boundary, sky, lights, bounces,
+                     scene.render.converged ? scene.render.tolerance : 0, refinement,
                      [&](std::size_t count, const std::function<void(std::size_t, Sweep&)>& body) {
                          const Share share{part * round / rounds, part / rounds};
                          ++round;
@@ -205,7 +207,9 @@ Solution solve(const Scene& scene, const SolveOptions& options) {
     const Canvas& canvas = scene.canvas;
     solution.image =
         ImageF(canvas.width, canvas.height, 3, std::numeric_limits<float>::quiet_NaN());
-    const Region region = options.region.value_or(Region{0, 0, canvas.width, canvas.height});
+    const PixelRect shown = canvas.region_or_all();
+    const Region region =
+        options.region.value_or(Region{shown.x, shown.y, shown.x + shown.w, shown.y + shown.h});
     const int stride = std::max(options.stride, 1);
     const auto solved = [&](int from, int to, int limit) {
         std::vector<int> places;
@@ -235,6 +239,13 @@ Solution solve(const Scene& scene, const SolveOptions& options) {
                          }
                          intervals += in_row;
                      });
+    if (canvas.region) {
+        ImageF part(shown.w, shown.h, 3);
+        for (int y = 0; y < shown.h; ++y) {
+            std::copy_n(solution.image.at(shown.x, shown.y + y), std::size_t(3) * std::size_t(shown.w), part.at(0, y));
+        }
+        solution.image = std::move(part);
+    }
     solution.cancelled = !complete;
     solution.intervals = intervals;
     solution.seconds = elapsed();

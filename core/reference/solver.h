@@ -45,7 +45,7 @@ struct Solution {
     Problems problems;            // not empty: refused, and there is no picture
 };
 
-// Expects a validated scene (core/scene/validate.h).
+// Expects a validated scene (core/scene/validate.h). The picture is `canvas.region` of the canvas, where the scene has one.
 Solution solve(const Scene& scene, const SolveOptions& options = {});
 
 // The same at single points, for tests and probes. Building it does the work that all points share

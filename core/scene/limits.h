@@ -28,7 +28,15 @@ struct Limits {
     double min_view_side = 1e-6;   // world units
     double max_radiance = 1e9;     // linear; products of three stay finite in single precision
     double max_exposure_ev = 64;   // absolute
+    // A camera's settings: all of them together stay within max_exposure_ev.
+    double min_aperture = 0.1, max_aperture = 1000;  // f-number
+    double min_shutter_s = 1e-6, max_shutter_s = 1e5;
+    double min_iso = 1, max_iso = 1e7;
+    double max_compensation_ev = 16;  // absolute
+    double min_key = 1e-3, max_key = 10;
+    double min_white = 1e-3, max_white = 1e9;  // as radiance
     int max_bounces = 64;          // the format's own bound
+    int max_converging_bounces = 256;  // of bounces: "converged"
 };
 
 }  // namespace penumbra

@@ -2,8 +2,17 @@
 #include "core/scene/normal_form.h"
 
 #include "core/scene/archive.h"
+#include "core/scene/words.h"
 
 namespace penumbra {
+namespace {
+
+template <class R>
+bool same(const R& a, const R& b) {
+    return a.x == b.x && a.y == b.y && a.w == b.w && a.h == b.h;
+}
+
+}  // namespace
 
 // Every struct is taken apart whole: a member that is added to one makes its line here an error, instead of a picture that
 // is given for a scene it was not rendered from.
@@ -35,8 +44,9 @@ void fields(A& archive, Like<A, Polyline>& shape) {
 }
 template <class A>
 void fields(A& archive, Like<A, Polygon>& shape) {
-    auto& [points] = shape;
-    archive(points);
+    auto& [points, ring_starts, key] = shape;
+    (void)key;  // how it was written is not what it is
+    archive(points, ring_starts);
 }
 template <class A>
 void fields(A& archive, Like<A, Texels>& texels) {
@@ -55,8 +65,8 @@ void fields(A& archive, Like<A, Shape>& shape) {
 }
 template <class A>
 void fields(A& archive, Like<A, PointLight>& light) {
-    auto& [position, intensity] = light;
-    archive(position, intensity);
+    auto& [position, intensity, radius] = light;
+    archive(position, intensity, radius);
 }
 template <class A>
 void fields(A& archive, Like<A, SpotLight>& light) {
@@ -84,27 +94,61 @@ void fields(A& archive, Like<A, ViewRect>& view) {
     archive(x, y, w, h);
 }
 template <class A>
-void fields(A& archive, Like<A, Canvas>& canvas) {
-    auto& [width, height, view, margin, floor] = canvas;
-    archive(width, height);
-    // One that is left out is the same as one that says the default.
+void fields(A& archive, Like<A, PixelRect>& rect) {
+    auto& [x, y, w, h] = rect;
+    archive(x, y, w, h);
+}
+
+// What is left out is the same as what says the default: it is written out, and left out again when it is read.
+template <class A, class T>
+void with_default(A& archive, Like<A, std::optional<T>>& value, const T& standard) {
     if constexpr (A::kReads) {
-        archive(view.emplace());
+        archive(value.emplace());
+        if (*value == standard) value.reset();
     } else {
-        archive(canvas.view_or_default());
-        (void)view;
+        archive(value.value_or(standard));
+    }
+}
+
+template <class A>
+void fields(A& archive, Like<A, Canvas>& canvas) {
+    auto& [width, height, region, view, margin, floor] = canvas;
+    archive(width, height);
+    const PixelRect all{0, 0, width, height};
+    const ViewRect pixels{0, 0, double(width), double(height)};
+    if constexpr (A::kReads) {
+        archive(region.emplace(), view.emplace());
+        if (same(*region, all)) region.reset();
+        if (same(*view, pixels)) view.reset();
+    } else {
+        archive(region.value_or(all), view.value_or(pixels));
     }
     archive(margin, floor);
 }
 template <class A>
 void fields(A& archive, Like<A, RenderSettings>& render) {
-    auto& [method, quality, bounces, skip, view] = render;
-    archive(method, quality, bounces, skip, view);
+    auto& [method, quality, bounces, converged, tolerance, skip, keep, view] = render;
+    archive(method, quality, bounces, converged, tolerance, skip, keep, view);
+}
+template <class A>
+void fields(A& archive, Like<A, Camera>& camera) {
+    auto& [aperture, shutter, iso] = camera;
+    archive(aperture, shutter, iso);
 }
 template <class A>
 void fields(A& archive, Like<A, OutputSettings>& output) {
-    auto& [format, depth, antialias, solids, exposure, tonemap] = output;
-    archive(format, depth, antialias, solids, exposure, tonemap);
+    auto& [format, depth, antialias, solids, exposure, camera, key, tonemap, look, white, dither] = output;
+    archive(format);
+    // A depth that the format has not is its own.
+    if constexpr (A::kReads) {
+        archive(depth.emplace());
+    } else {
+        archive(bit_depth_of(format, depth));
+    }
+    archive(antialias, solids, exposure, camera, key, tonemap);
+    with_default<A, std::string>(archive, look, "none");
+    with_default<A, double>(archive, white, kDefaultWhite);
+    archive(dither);
 }
 template <class A>
 void fields(A& archive, Like<A, Scene>& scene) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -53,10 +54,27 @@ struct Polyline {
     bool closed = false;
 };
 
-// Filled by the even-odd rule.
+// What an outline was written as; problems name its key.
+enum class OutlineKey { points, d, text };
+
+// Filled by the even-odd rule. Its rings stand one behind the other in `points`: holes, and pieces that lie apart. Each ring but
+// the first begins at one of `ring_starts`, which grow; each is closed.
 struct Polygon {
-    std::vector<Point> points;
+    std::vector<Point> points{};
+    std::vector<std::size_t> ring_starts{};
+    OutlineKey key = OutlineKey::points;
 };
+
+// Calls edge(from, to) for every edge of every ring, in order.
+template <class Edge>
+void for_each_edge(const Polygon& polygon, Edge edge) {
+    std::size_t first = 0;
+    for (std::size_t ring = 0; ring <= polygon.ring_starts.size(); ++ring) {
+        const std::size_t end = ring < polygon.ring_starts.size() ? polygon.ring_starts[ring] : polygon.points.size();
+        for (std::size_t i = first; i < end; ++i) edge(polygon.points[i], polygon.points[i + 1 < end ? i + 1 : first]);
+        first = end;
+    }
+}
 
 // Decoded picture: RGBA, 8 bits, straight alpha, colours sRGB encoded, rows top to bottom.
 struct Texels {
@@ -85,6 +103,7 @@ struct Shape {
 struct PointLight {
     Point position{0};
     Colour intensity{0};  // radiant intensity per radian
+    double radius = 0;    // more than 0: a disc that shines, see core/scene/lower.h
 };
 
 struct SpotLight {
@@ -117,9 +136,15 @@ struct ViewRect {
     double x = 0, y = 0, w = 0, h = 0;  // world units
 };
 
+// A part of the canvas.
+struct PixelRect {
+    int x = 0, y = 0, w = 0, h = 0;  // pixels
+};
+
 struct Canvas {
     int width = 0;   // pixels
     int height = 0;  // pixels
+    std::optional<PixelRect> region;  // the part that becomes the picture; default: all of it
     std::optional<ViewRect> view;  // default: one world unit is one pixel
     double margin = 0;             // world units
     Colour floor_albedo{1};
@@ -127,6 +152,7 @@ struct Canvas {
     ViewRect view_or_default() const {
         return view ? *view : ViewRect{0, 0, double(width), double(height)};
     }
+    PixelRect region_or_all() const { return region ? *region : PixelRect{0, 0, width, height}; }
     // Side of a pixel in world units. Pixels are square once the scene is validated.
     double pixel_size() const { return view_or_default().w / width; }
 };
@@ -134,22 +160,43 @@ struct Canvas {
 enum class Quality { draft, standard, high };
 enum class Skip { all, none };
 enum class Solids { emission, lit };
+enum class Dither { none, triangular };
+
+// A camera's settings, for an exposure (core/film/exposure.h).
+struct Camera {
+    double aperture = 1;  // f-number
+    double shutter_s = 1;
+    double iso = 100;
+};
 
 struct RenderSettings {
     std::string method = "auto";
     Quality quality = Quality::standard;
-    int bounces = 0;
+    int bounces = 0;             // at most, when `converged`
+    bool converged = false;      // bounces end before, once nothing changes by more than `tolerance`
+    double tolerance = 1e-3;     // share of the brightest surface's radiance
     Skip skip = Skip::all;
+    std::uint32_t keep = 0;  // bits of core/plan/saving.h: work that is done all the same, to measure what it costs
     std::string view = "final";
 };
 
+// The radiance that Reinhard's extended curve maps to 1, unless the scene says another.
+constexpr double kDefaultWhite = 4;
+// What automatic exposure makes of the log-average: the reflectance of a photographer's grey card.
+constexpr double kDefaultKey = 0.18;
+
 struct OutputSettings {
     std::string format = "png";
-    int bit_depth = 8;
+    std::optional<int> bit_depth;  // else the format's own (core/scene/words.h)
     bool antialias = true;
     Solids solids = Solids::emission;
-    double exposure_ev = 0;
+    double exposure_ev = 0;           // with a camera, its compensation
+    std::optional<Camera> camera;
+    std::optional<double> auto_key;   // automatic exposure: what the log-average of the free pixels becomes
     std::string tonemap = "none";
+    std::optional<std::string> look;  // of "agx", else "none"
+    std::optional<double> white;      // of "reinhard_extended", else kDefaultWhite
+    Dither dither = Dither::none;
 };
 
 struct Scene {

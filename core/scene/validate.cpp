@@ -46,6 +46,16 @@ void validate_domain(RangeChecks& checks, const Path& where, const Canvas& canva
                    number_text(limits.max_domain_pixels) + " in all are allowed");
 }
 
+void validate_region(RangeChecks& checks, const Path& where, const Canvas& canvas) {
+    const PixelRect& region = *canvas.region;
+    if (checks.between(where.index(0), region.x, 0, canvas.width - 1)) {
+        checks.between(where.index(2), region.w, 1, canvas.width - region.x);
+    }
+    if (checks.between(where.index(1), region.y, 0, canvas.height - 1)) {
+        checks.between(where.index(3), region.h, 1, canvas.height - region.y);
+    }
+}
+
 void validate_canvas(RangeChecks& checks, const Path& where, const Canvas& canvas) {
     const Limits& limits = checks.limits();
     const bool width =
@@ -57,6 +67,9 @@ void validate_canvas(RangeChecks& checks, const Path& where, const Canvas& canva
         checks.between(where.key("margin"), canvas.margin, 0, limits.max_coordinate);
     const Path floor = where.key("floor");
     checks.colour(floor.key("albedo"), canvas.floor_albedo, 1);
+    if (width && height && canvas.region) {
+        validate_region(checks, where.key("region"), canvas);
+    }
     if (!width || !height || !view) {
         return;
     }
@@ -128,6 +141,7 @@ public:
     LightChecks(RangeChecks& checks, const Path& where) : checks_(checks), where_(where) {}
 
     void operator()(const PointLight& light) {
+        checks_.between(where_.key("radius"), light.radius, 0.0, checks_.limits().max_coordinate);
         checks_.coordinates(where_.key("position"), light.position);
         colour("intensity", light.intensity);
     }
@@ -183,22 +197,66 @@ void validate_word(RangeChecks& checks, const Path& where, std::string_view word
 void validate_render(RangeChecks& checks, const Path& where, const RenderSettings& render) {
     validate_word(checks, where.key("method"), render.method,
                   is_known_word(render.method, known_methods()), known_methods());
-    checks.between(where.key("bounces"), render.bounces, 0, checks.limits().max_bounces);
+    if (!render.converged) checks.between(where.key("bounces"), render.bounces, 0, checks.limits().max_bounces);
+    checks.between(where.key("tolerance"), render.tolerance, 1e-6, 1);
     validate_word(checks, where.key("view"), render.view, is_known_view(render.view),
                   known_views());
+}
+
+void validate_exposure(RangeChecks& checks, const Path& where, const OutputSettings& output) {
+    const Limits& limits = checks.limits();
+    if (output.auto_key) {
+        checks.between(where.key("key"), *output.auto_key, limits.min_key, limits.max_key);
+        return;
+    }
+    if (!output.camera) {
+        checks.between(where, output.exposure_ev, -limits.max_exposure_ev, limits.max_exposure_ev);
+        return;
+    }
+    checks.between(where.key("aperture"), output.camera->aperture, limits.min_aperture, limits.max_aperture);
+    checks.between(where.key("shutter"), output.camera->shutter_s, limits.min_shutter_s, limits.max_shutter_s);
+    checks.between(where.key("iso"), output.camera->iso, limits.min_iso, limits.max_iso);
+    checks.between(where.key("compensation"), output.exposure_ev, -limits.max_compensation_ev,
+                   limits.max_compensation_ev);
+}
+
+void validate_bit_depth(RangeChecks& checks, const Path& where, const OutputSettings& output) {
+    if (!output.bit_depth || !is_known_word(output.format, known_formats())) {
+        return;
+    }
+    const std::span<const int> depths = bit_depths_of(output.format);
+    if (depths.empty()) {
+        checks.add(where, "conflict", "must not stand with the format " + output.format + ", which has no choice of it");
+    } else if (std::find(depths.begin(), depths.end(), *output.bit_depth) == depths.end()) {
+        checks.add(where, "unknown_value",
+                   "must be " + std::to_string(depths[0]) + " or " + std::to_string(depths[1]) + " for " +
+                       output.format + ", is " + std::to_string(*output.bit_depth));
+    }
 }
 
 void validate_output(RangeChecks& checks, const Path& where, const OutputSettings& output) {
     validate_word(checks, where.key("format"), output.format,
                   is_known_word(output.format, known_formats()), known_formats());
-    if (output.bit_depth != 8 && output.bit_depth != 16) {
-        checks.add(where.key("bit_depth"), "unknown_value",
-                   "must be 8 or 16, is " + std::to_string(output.bit_depth));
-    }
-    const double most = checks.limits().max_exposure_ev;
-    checks.between(where.key("exposure"), output.exposure_ev, -most, most);
+    validate_bit_depth(checks, where.key("bit_depth"), output);
+    validate_exposure(checks, where.key("exposure"), output);
     validate_word(checks, where.key("tonemap"), output.tonemap,
                   is_known_word(output.tonemap, known_tonemaps()), known_tonemaps());
+    // What a curve has no use for is not passed over.
+    const auto only_for = [&](const char* key, const char* curve) {
+        if (output.tonemap != curve && is_known_word(output.tonemap, known_tonemaps())) {
+            checks.add(where.key(key), "conflict",
+                       "is for the tone map " + std::string(curve) + ", not for " + output.tonemap);
+        }
+    };
+    if (output.look) {
+        validate_word(checks, where.key("look"), *output.look, is_known_word(*output.look, known_looks()),
+                      known_looks());
+        only_for("look", "agx");
+    }
+    if (output.white) {
+        checks.between(where.key("white"), *output.white, checks.limits().min_white, checks.limits().max_white);
+        only_for("white", "reinhard_extended");
+    }
 }
 
 }  // namespace

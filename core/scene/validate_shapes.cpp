@@ -59,8 +59,13 @@ public:
     }
 
     void operator()(const Polygon& polygon) {
-        const Path where = where_.key("points");
-        if (!points(where, polygon.points, 3)) {
+        const bool drawn = polygon.key != OutlineKey::points;
+        const Path where = where_.key(polygon.key == OutlineKey::d ? "d" : polygon.key == OutlineKey::text ? "text" : "points");
+        if (drawn && polygon.points.empty()) {
+            checks_.add(where, "zero_area", "must enclose something: " + name() + " would have no area");
+            return;
+        }
+        if (!points(where, polygon.points, 3, drawn)) {
             return;
         }
         if (fewer_than_three_distinct(polygon.points)) {
@@ -113,7 +118,8 @@ private:
         return x && y;
     }
 
-    bool points(const Path& where, const std::vector<Point>& list, std::size_t fewest) {
+    // A path's or a text's points come of computing: a problem with one is a problem of the whole.
+    bool points(const Path& where, const std::vector<Point>& list, std::size_t fewest, bool drawn = false) {
         const std::size_t most = checks_.limits().max_points_per_shape;
         if (!checks_.count(where, list.size(), most, "points")) {
             return false;
@@ -125,6 +131,19 @@ private:
                         "must hold at least " + std::to_string(fewest) + " points, holds " +
                             std::to_string(list.size()) +
                             (fewest == 3 ? ": " + name() + " would have no area" : std::string()));
+            return false;
+        }
+        if (drawn) {
+            const auto far = std::find_if_not(list.begin(), list.end(), [&](const Point& p) {
+                const double high = checks_.limits().max_coordinate;
+                return std::abs(p.x) <= high && std::abs(p.y) <= high;
+            });
+            if (far == list.end()) {
+                return true;
+            }
+            checks_.add(where, "out_of_range",
+                        "must stay within " + number_text(checks_.limits().max_coordinate) + " either way, reaches [" +
+                            number_text(far->x) + ", " + number_text(far->y) + "]");
             return false;
         }
         bool good = true;

@@ -11,10 +11,12 @@ namespace {
 constexpr std::string_view kMethods[] = {"auto",  "rc",     "rc_fix",   "hrc",
                                          "exact", "hybrid", "reference"};
 constexpr std::string_view kViews[] = {"final",  "distance", "cascade0",
-                                       "probes", "steps",    "normals"};
+                                       "probes", "steps",    "normals",
+                                       "tiles"};
 constexpr std::string_view kFormats[] = {"png", "pfm", "exr", "hdr", "npy"};
 constexpr std::string_view kTonemaps[] = {
-    "none", "reinhard", "reinhard_extended", "aces", "agx", "pbr_neutral", "tony"};
+    "none", "reinhard", "reinhard_extended", "aces", "aces_narkowicz", "agx", "pbr_neutral", "tony"};
+constexpr std::string_view kLooks[] = {"none", "golden", "punchy"};
 
 constexpr int kMaxCascade = 15;  // 4^15 pixels across: more than any canvas has
 
@@ -24,9 +26,24 @@ std::span<const std::string_view> known_methods() { return kMethods; }
 std::span<const std::string_view> known_views() { return kViews; }
 std::span<const std::string_view> known_formats() { return kFormats; }
 std::span<const std::string_view> known_tonemaps() { return kTonemaps; }
+std::span<const std::string_view> known_looks() { return kLooks; }
 
 bool is_known_word(std::string_view word, std::span<const std::string_view> known) {
     return std::find(known.begin(), known.end(), word) != known.end();
+}
+
+std::span<const int> bit_depths_of(std::string_view format) {
+    static constexpr int kPng[] = {8, 16};
+    static constexpr int kExr[] = {32, 16};
+    if (format == "png") return kPng;
+    if (format == "exr") return kExr;
+    return {};
+}
+
+int bit_depth_of(std::string_view format, std::optional<int> asked) {
+    const std::span<const int> depths = bit_depths_of(format);
+    if (asked && std::find(depths.begin(), depths.end(), *asked) != depths.end()) return *asked;
+    return depths.empty() ? 0 : depths.front();
 }
 
 bool is_known_view(std::string_view word) {

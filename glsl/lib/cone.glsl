@@ -48,7 +48,10 @@ void march_cone(vec2 p, vec2 d, float width, float slope, vec4 domain, ivec2 bor
             if (room < kNear + 0.5 * w) break;
             t += room - kHalfDiagonal - 0.5 * w;
         }
-        if (budget <= 0) passes = 0.0;  // blocked, never free
+        if (budget <= 0) {
+            ++lost_rays;
+            passes = 0.0;  // blocked, never free
+        }
         bool over = t >= stop;
         int shape = over ? -1 : texelFetch(material_texture, pixel, 0).r;
         vec4 head = texelFetch(shape_records, max(shape, 0) * kShapeTexels);

@@ -6,6 +6,14 @@
 layout(binding = kCascadeDistanceUnit) uniform sampler2D distance_texture;
 layout(binding = kCascadeMaterialUnit) uniform isampler2D material_texture;
 
+// Rays that ran out of steps count as blocked, and are counted.
+layout(std430, binding = kLostRaysStorage) buffer LostRayCounters { uint lost_ray_counts[]; };
+uint lost_rays = 0u;  // of this invocation
+
+void report_lost_rays() {
+    if (lost_rays > 0u) atomicAdd(lost_ray_counts[0], lost_rays);
+}
+
 const int kRayPassed = 0;   // free to its end
 const int kRayBlocked = 1;  // met a shape, or ran out of steps
 const int kRayLeft = 2;     // left the domain
@@ -93,6 +101,7 @@ int march(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, ino
         // The last step of an interval ends on its end: what is met there is not left to other probes.
         t = t + step >= stop && t < stop - 0.01 ? stop - 0.005 : t + step;
     }
+    if (hit < 0 && fate == kRayBlocked) ++lost_rays;
     if (hit >= 0) {
         radiance = shape_emission(hit, hit_at);
         if (int(texelFetch(shape_records, hit * kShapeTexels).x) != kShapeBitmap) radiance *= texelFetch(shape_records, hit * kShapeTexels + 1).w;

@@ -5,6 +5,11 @@ layout(binding = kShapeRecordsUnit) uniform samplerBuffer shape_records;
 layout(binding = kEdgesUnit) uniform samplerBuffer edges;
 layout(binding = kBitmapTexelsUnit) uniform samplerBuffer bitmap_texels;
 
+// Which program this is: a kind that the scene has not is left out.
+const int kSceneEllipses = 1;
+const int kSceneOutlines = 1;  // polylines and polygons
+const int kSceneBitmaps = 1;
+
 const float kFar = 1e30;
 
 vec2 rotate_into(vec2 p, vec2 cos_sin) {
@@ -71,14 +76,15 @@ float shape_distance(int shape, vec2 p, float best) {
         vec2 q = abs(rotate_into(p - a.xy, b.xy)) - a.zw + b.z;
         return length(max(q, vec2(0.0))) + min(max(q.x, q.y), 0.0) - b.z;
     }
-    if (type == kShapeLine) return segment_distance(p, a) - b.z;
-    if (type == kShapeEllipse) return ellipse_distance(rotate_into(p - a.xy, b.xy), a.zw);
-    if (type == kShapeBitmap) {
+    if (kSceneEllipses + kSceneOutlines + kSceneBitmaps == 0 || type == kShapeLine) return segment_distance(p, a) - b.z;
+    if (kSceneEllipses != 0 && type == kShapeEllipse) return ellipse_distance(rotate_into(p - a.xy, b.xy), a.zw);
+    if (kSceneBitmaps != 0 && type == kShapeBitmap) {
         int texel;
         if (!bitmap_texel(a, b, p, texel)) return kFar;
         // Distances to a bitmap come from jump flooding; here only: is this pixel solid?
         return texelFetch(bitmap_texels, texel).a >= b.w ? -0.5 : kFar;
     }
+    if (kSceneOutlines == 0) return kFar;
     int first = int(head.z);
     int end = first + int(head.w);
     vec2 outside = max(max(a.xy - p, p - a.zw), vec2(0.0));
@@ -103,7 +109,7 @@ vec3 srgb_to_linear(vec3 c) {
 vec3 shape_emission(int shape, vec2 p) {
     int at = shape * kShapeTexels;
     vec4 light = texelFetch(shape_records, at + 1);
-    if (int(texelFetch(shape_records, at).x) != kShapeBitmap) return light.rgb;
+    if (kSceneBitmaps == 0 || int(texelFetch(shape_records, at).x) != kShapeBitmap) return light.rgb;
     int texel;
     if (light.w == 0.0 ||
         !bitmap_texel(texelFetch(shape_records, at + 2), texelFetch(shape_records, at + 3), p, texel)) return vec3(0.0);

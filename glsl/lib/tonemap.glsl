@@ -15,6 +15,20 @@ vec3 tonemap_aces(vec3 c) {
     return back * v;
 }
 
+// Krzysztof Narkowicz, "ACES Filmic Tone Mapping Curve", 2016.
+vec3 tonemap_aces_narkowicz(vec3 c) {
+    c = min(c, vec3(1e6));
+    return c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14);
+}
+
+// ASC CDL; luma is taken before the power, as in Wrensch's and Filament's.
+vec3 graded(vec3 v, vec3 slope, float power, float saturation) {
+    v = max(v * slope, vec3(0.0));
+    float luma = dot(v, vec3(0.2126, 0.7152, 0.0722));
+    v = pow(v, vec3(power));
+    return luma + saturation * (v - luma);
+}
+
 // AgX (Sobotka's inset and range), with Wrensch's contrast polynomial of 6th order and outset.
 vec3 tonemap_agx(vec3 c) {
     const mat3 inset = mat3(0.842479062253094, 0.0423282422610123, 0.0423756549057051,
@@ -28,6 +42,8 @@ vec3 tonemap_agx(vec3 c) {
     vec3 v2 = v * v;
     vec3 v4 = v2 * v2;
     v = 15.5 * v4 * v2 - 40.14 * v4 * v + 31.96 * v4 - 6.868 * v2 * v + 0.4298 * v2 + 0.1191 * v - 0.00232;
+    if (kComposeLook == kLookGolden) v = graded(v, vec3(1.0, 0.9, 0.5), 0.8, 1.3);
+    if (kComposeLook == kLookPunchy) v = graded(v, vec3(1.0), 1.35, 1.4);
     return pow(max(outset * v, vec3(0.0)), vec3(2.2));
 }
 
@@ -43,12 +59,33 @@ vec3 tonemap_pbr_neutral(vec3 c) {
     return c * (compressed / peak) * g + compressed * (1.0 - g);
 }
 
-vec3 tonemap(vec3 c, int curve, float white) {
-    if (curve == kTonemapReinhard) return tonemap_reinhard(c);
-    if (curve == kTonemapReinhardExtended) return tonemap_reinhard_extended(c, white);
-    if (curve == kTonemapAces) return tonemap_aces(c);
-    if (curve == kTonemapAgx) return tonemap_agx(c);
-    if (curve == kTonemapPbrNeutral) return tonemap_pbr_neutral(c);
+layout(binding = kComposeLutUnit) uniform sampler2D tone_lut;
+
+// A table over x/(x+1): 0 is the middle of the first texel and 1 that of the last. Texels are read whole and mixed here, since a
+// device's filter knows 256 steps between them.
+vec3 tonemap_lut(vec3 c) {
+    int size = textureSize(tone_lut, 0).x;
+    vec3 at = c / (1.0 + c) * float(size - 1);
+    ivec3 low = min(ivec3(at), ivec3(size - 2));
+    vec3 f = at - vec3(low);
+    vec3 layers[2];
+    for (int z = 0; z < 2; ++z) {
+        ivec2 texel = ivec2(low.x, (low.z + z) * size + low.y);
+        vec3 near = mix(texelFetch(tone_lut, texel, 0).rgb, texelFetch(tone_lut, texel + ivec2(1, 0), 0).rgb, f.x);
+        vec3 far = mix(texelFetch(tone_lut, texel + ivec2(0, 1), 0).rgb, texelFetch(tone_lut, texel + ivec2(1, 1), 0).rgb, f.x);
+        layers[z] = mix(near, far, f.y);
+    }
+    return mix(layers[0], layers[1], f.z);
+}
+
+vec3 tonemap(vec3 c, float white) {
+    if (kComposeTonemap == kTonemapReinhard) return tonemap_reinhard(c);
+    if (kComposeTonemap == kTonemapReinhardExtended) return tonemap_reinhard_extended(c, white);
+    if (kComposeTonemap == kTonemapAces) return tonemap_aces(c);
+    if (kComposeTonemap == kTonemapAcesNarkowicz) return tonemap_aces_narkowicz(c);
+    if (kComposeTonemap == kTonemapAgx) return tonemap_agx(c);
+    if (kComposeTonemap == kTonemapPbrNeutral) return tonemap_pbr_neutral(c);
+    if (kComposeTonemap == kTonemapTony) return tonemap_lut(c);
     return c;
 }
 

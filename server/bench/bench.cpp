@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -15,27 +14,14 @@
 #include <nlohmann/json.hpp>
 
 #include "core/compare/error_figures.h"
+#include "server/bench/measure.h"
 #include "server/cli/files.h"
-#include "server/json/scene_json.h"
 #include "server/service/version.h"
 
 namespace penumbra {
 namespace {
 
 using nlohmann::ordered_json;
-
-double process_cpu_ms() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return 1e3 * double(now.tv_sec) + 1e-6 * double(now.tv_nsec);
-}
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 ordered_json rounded(double value, double step) { return std::round(value / step) * step; }
 
@@ -54,16 +40,6 @@ std::vector<Override> resize(const Scene& scene, int size) {
     const int height = std::max(1, static_cast<int>(std::lround(double(size) * scene.canvas.height / scene.canvas.width)));
     const ordered_json box = {view.x, view.y, view.w, view.w * height / size};
     return {{"/canvas/width", std::to_string(size)}, {"/canvas/height", std::to_string(height)}, {"/canvas/view", box.dump()}};
-}
-
-Scene parse(const std::string& path, const std::string& text, const std::vector<Override>& overrides) {
-    ParsedScene parsed = parse_scene(text, {}, {}, overrides);
-    if (!parsed.scene) {
-        LocatedProblem& problem = parsed.problems.front();
-        problem.set_at.clear();  // the overrides are bench's own, nobody wrote --set
-        throw std::runtime_error(path + ": " + to_string(problem));
-    }
-    return std::move(*parsed.scene);
 }
 
 ordered_json error_json(const ErrorFigures& e) {
@@ -91,15 +67,8 @@ ordered_json pass_json(const std::vector<RenderStats>& runs) {
 }
 
 ordered_json counters(const RenderStats& stats) {
-    std::uint64_t rays = 0;
-    std::uint64_t dispatches = 0;
-    std::uint64_t invocations = 0;
-    for (const PassStats& pass : stats.passes) {
-        rays += pass.rays;
-        dispatches += pass.dispatches;
-        if (pass.dispatches > 0) invocations += std::uint64_t(pass.width) * std::uint64_t(pass.height);
-    }
-    return {{"rays", rays}, {"dispatches", dispatches}, {"invocations", invocations}};
+    const Work work = work_of(stats);
+    return {{"rays", work.rays}, {"points", work.points}, {"dispatches", work.dispatches}, {"invocations", work.invocations}};
 }
 
 }  // namespace
@@ -125,15 +94,15 @@ std::string run_case(const BenchCase& c, const BenchSettings& settings, RenderBa
                      const TruthCache& truths, const std::function<bool(double)>& progress) {
     const std::string text = read_text(c.scene, std::size_t(64) << 20);
     std::vector<Override> overrides;
-    if (c.size > 0) overrides = resize(parse(c.scene, text, {}), c.size);
+    if (c.size > 0) overrides = resize(bench_scene(c.scene, text, {}), c.size);
     // What the light depends on, before the method enters.
     std::string identity = text;
     for (const Override& o : overrides) identity += "\n" + o.pointer + "=" + o.value;
     overrides.push_back({"/render/method", c.method});
     overrides.push_back({"/render/quality", c.quality});
     overrides.push_back({"/output/format", "pfm"});
-    const Scene scene = parse(c.scene, text, overrides);
-    for (const Problem& problem : engine.unsupported(scene)) throw std::runtime_error(problem.pointer + ": " + problem.message);
+    const Scene scene = bench_scene(c.scene, text, overrides);
+    for (const Problem& problem : engine.unsupported_with({})(scene)) throw std::runtime_error(problem.pointer + ": " + problem.message);
 
     for (int i = 0; i < settings.warm_up; ++i) backend.render(scene, {});
     std::vector<RenderStats> runs;

@@ -43,7 +43,7 @@ Truth TruthCache::get(const Scene& scene, const std::string& identity, int strid
         const std::string text = read_text(path, std::size_t(4) << 30);
         auto decoded = decode_pfm({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
         if (auto* image = std::get_if<ImageF>(&decoded);
-            image != nullptr && image->width == scene.canvas.width && image->height == scene.canvas.height) {
+            image != nullptr && image->width == scene.canvas.region_or_all().w && image->height == scene.canvas.region_or_all().h) {
             truth.image = std::move(*image);
             truth.seconds = std::strtod(read_text(note, 64).c_str(), nullptr);
             return truth;

@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "server/bench/bench.h"
+#include "server/bench/scaling.h"
+#include "server/bench/skip_table.h"
 #include "server/cli/checks.h"
 #include "server/cli/commands.h"
 #include "server/cli/files.h"
@@ -27,6 +29,8 @@ struct BenchOptions {
     std::string output = "-";
     std::string truths = "out/truth";
     bool fresh = false;
+    bool skip_table = false;
+    bool scaling = false;
     BenchSettings settings;
 };
 
@@ -52,12 +56,50 @@ void check_words(const std::string& option, const std::string& pointer, const st
         const ParsedScene parsed =
             parse_scene(R"({"version": 1, "canvas": {"width": 16, "height": 16}})", {}, {}, {{pointer, word}});
         if (!parsed.scene) throw InputError(option + ": " + parsed.problems.front().problem.message);
-        for (const Problem& problem : engine.unsupported(*parsed.scene)) throw InputError(option + ": " + problem.message);
+        for (const Problem& problem : engine.unsupported_with({})(*parsed.scene)) throw InputError(option + ": " + problem.message);
     }
 }
 
+// A line of results, to the file or to the standard output.
+void put(const BenchOptions& options, const std::string& text) {
+    if (options.output == "-")
+        std::cout << text << std::flush;
+    else
+        std::ofstream(options.output, std::ios::app) << text;
+}
+
+int run_skip_table(const BenchOptions& options, const Engine& engine) {
+    if (options.output != "-") std::ofstream(options.output, std::ios::trunc);
+    const auto backend = engine.make_backend({.device = options.devices.front(), .shader_dir = {}, .tone_lut = {}});
+    put(options, skip_table_head());
+    std::size_t failed = 0;
+    for (const std::string& scene : options.scenes)
+        for (const std::string& method : options.methods)
+            try {
+                put(options, skip_rows(scene, method, "standard", {options.settings.repeats, options.settings.most_seconds}, *backend, engine));
+            } catch (const std::runtime_error& error) {
+                complain(scene + " (" + method + "): " + error.what());
+                ++failed;
+            }
+    return failed == 0 ? kSuccess : kWorldFailed;
+}
+
+int run_scaling(const BenchOptions& options, const Engine& engine) {
+    if (options.output != "-") std::ofstream(options.output, std::ios::trunc);
+    const auto backend = engine.make_backend({.device = options.devices.front(), .shader_dir = {}, .tone_lut = {}});
+    measure_scaling({options.methods, "standard", options.settings.repeats, options.settings.most_seconds}, *backend, engine,
+                    [&](const std::string& row) {
+                        put(options, row + "\n");
+                        if (options.output != "-") std::fprintf(stderr, "%s\n", row.c_str());
+                    });
+    return kSuccess;
+}
+
 int run_bench(const BenchOptions& options, const Engine& engine) {
+    if (options.scenes.empty() && !options.scaling) throw InputError("scenes: name at least one scene file");
     check_words("--methods", "/render/method", options.methods, engine);
+    if (options.skip_table) return run_skip_table(options, engine);
+    if (options.scaling) return run_scaling(options, engine);
     check_words("--qualities", "/render/quality", options.qualities, engine);
     const bool to_file = options.output != "-";
     if (options.fresh && to_file) std::ofstream(options.output, std::ios::trunc);
@@ -66,7 +108,7 @@ int run_bench(const BenchOptions& options, const Engine& engine) {
     std::size_t failed = 0;
     std::size_t kept = 0;
     for (const std::string& device : options.devices) {
-        const auto backend = engine.make_backend({.device = device, .shader_dir = {}});
+        const auto backend = engine.make_backend({.device = device, .shader_dir = {}, .tone_lut = {}});
         for (const std::string& scene : options.scenes)
             for (const int size : options.sizes)
                 for (const std::string& method : options.methods)
@@ -102,7 +144,7 @@ int run_bench(const BenchOptions& options, const Engine& engine) {
 void add_bench_command(CLI::App& app, CommandContext& context) {
     CLI::App* command = app.add_subcommand("bench", "Measure time against error (see docs/benchmarks.md)");
     auto options = std::make_shared<BenchOptions>();
-    command->add_option("scenes", options->scenes, "Scene files")->required()->check(readable_file());
+    command->add_option("scenes", options->scenes, "Scene files")->check(readable_file());
     command->add_option("--methods", options->methods, "Methods")->delimiter(',')->capture_default_str();
     command->add_option("--qualities", options->qualities, "Qualities")->delimiter(',')->capture_default_str();
     command->add_option("--sizes", options->sizes, "Pixels along x, 0 for the scene's own size")
@@ -111,6 +153,10 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
         ->check(device_name())->delimiter(',')->capture_default_str();
     command->add_option("-o,--output", options->output,
                         "Results, a line of JSON a case; what the file holds already is not measured again");
+    auto* skip_table = command->add_flag("--skip-table", options->skip_table,
+                      "Measure what each kind of work that a scene does not need costs, as a Markdown table (standard quality)");
+    command->add_flag("--scaling", options->scaling,
+                      "Measure how cost grows with shapes, canvas and emitters (scenes of its own, standard quality)")->excludes(skip_table);
     command->add_flag("--fresh", options->fresh, "Measure all cases anew");
     command->add_option("--truths,--truth-dir", options->truths,
                         "Folder of exact solutions, kept by the scene's hash; made when the first one is solved")->capture_default_str();

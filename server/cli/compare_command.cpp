@@ -17,6 +17,7 @@
 #include "server/cli/checks.h"
 #include "server/cli/commands.h"
 #include "server/cli/files.h"
+#include "server/cli/picture_input.h"
 #include "server/service/formats.h"
 
 namespace penumbra {
@@ -53,27 +54,6 @@ struct CompareOptions {
     };
 };
 
-using Picture = std::variant<ImageF, Image8>;
-
-Picture read_picture(const std::string& path) {
-    const std::string text = read_text(path, std::size_t(4) << 30);
-    const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-    if (text.rfind("PF", 0) == 0 || text.rfind("Pf", 0) == 0) {
-        auto decoded = decode_pfm(bytes);
-        if (const auto* error = std::get_if<DecodeError>(&decoded)) throw InputError(path + ": " + error->message);
-        return std::move(std::get<ImageF>(decoded));
-    }
-    auto decoded = decode_png(bytes, {.max_side_px = 16384, .max_pixels = 16384.0 * 16384.0});
-    if (const auto* error = std::get_if<DecodeError>(&decoded)) throw InputError(path + ": " + error->message);
-    const Texels& texels = std::get<Texels>(decoded);
-    Image8 image;
-    image.width = texels.width;
-    image.height = texels.height;
-    image.channels = 4;
-    image.data = texels.rgba;
-    return image;
-}
-
 template <class T>
 T& expect(std::variant<T, Problem>& result) {
     if (const auto* problem = std::get_if<Problem>(&result)) throw InputError(problem->message);
@@ -97,13 +77,25 @@ ordered_json compare_linear(const ImageF& a, const ImageF& b, const std::string&
             {"nan_only_a", e.nan_only_a}};
 }
 
-ordered_json compare_display(const Image8& a, const Image8& b, const CompareOptions& options) {
-    auto pixels = pixel_figures(a, b);
+// Codes of 16 bits where either picture has them; FLIP, which is about what an eye sees, takes 8.
+ordered_json compare_display(const Picture& first, const Picture& second, const CompareOptions& options) {
+    const auto codes = [](const Picture& picture) {
+        const auto* narrow = std::get_if<Image8>(&picture);
+        return narrow != nullptr ? *narrow : narrowed(std::get<Image16>(picture));
+    };
+    const auto wide = [](const Picture& picture) {
+        const auto* codes_of_16 = std::get_if<Image16>(&picture);
+        return codes_of_16 != nullptr ? *codes_of_16 : widened(std::get<Image8>(picture));
+    };
+    const Image8 a = codes(first), b = codes(second);
+    const bool narrow = std::holds_alternative<Image8>(first) && std::holds_alternative<Image8>(second);
+    auto pixels = narrow ? pixel_figures(a, b) : pixel_figures(wide(first), wide(second));
     const PixelFigures& p = expect(pixels);
+    const ordered_json largest = narrow ? ordered_json(int(p.largest)) : ordered_json(p.largest);
     auto seen = flip(a, b, {.pixels_per_degree = options.pixels_per_degree});
     const Flip& f = expect(seen);
     if (!options.diff.empty()) write_file(options.diff, encode_png(heat_picture(f.map)));
-    return {{"kind", "display"}, {"largest", p.largest}, {"mean", p.mean}, {"differing", p.differing},
+    return {{"kind", "display"}, {"largest", largest}, {"mean", p.mean}, {"differing", p.differing},
             {"pixels", p.pixels}, {"psnr_db", number(p.psnr_db)}, {"flip", f.mean}};
 }
 
@@ -152,10 +144,10 @@ int compare_files(const CompareOptions& options) {
         throw InputError("--diff takes a name that ends in .png, not " + options.diff);
     const Picture a = read_picture(options.a);
     const Picture b = read_picture(options.b);
-    if (a.index() != b.index()) throw InputError("one picture is linear (PFM) and the other is not");
-    ordered_json figures = std::holds_alternative<ImageF>(a)
-                               ? compare_linear(std::get<ImageF>(a), std::get<ImageF>(b), options.diff)
-                               : compare_display(std::get<Image8>(a), std::get<Image8>(b), options);
+    const bool linear = std::holds_alternative<ImageF>(a);
+    if (linear != std::holds_alternative<ImageF>(b)) throw InputError("one picture is linear and the other is not");
+    ordered_json figures = linear ? compare_linear(std::get<ImageF>(a), std::get<ImageF>(b), options.diff)
+                                  : compare_display(a, b, options);
     const std::vector<std::string> complaints = exceeded(figures, options.bounds);
     if (options.json) {
         figures["exceeded"] = complaints;
@@ -172,8 +164,8 @@ int compare_files(const CompareOptions& options) {
 void add_compare_command(CLI::App& app, CommandContext& context) {
     CLI::App* command = app.add_subcommand("compare", "Compare a picture with another: error figures, FLIP, a difference picture");
     auto options = std::make_shared<CompareOptions>();
-    command->add_option("a", options->a, "Picture, PFM or PNG")->required();
-    command->add_option("b", options->b, "The truth, of the same kind and size; NaN samples of a PFM are left out")->required();
+    command->add_option("a", options->a, "Picture: PNG (8 or 16 bits), or linear: PFM, EXR, HDR, NPY")->required();
+    command->add_option("b", options->b, "The truth, of the same kind and size; NaN samples are left out")->required();
     command->add_flag("--json", options->json, "Say it as JSON");
     command->add_option("--diff", options->diff, "Write a difference picture (.png): red too bright and blue too dark, or FLIP's map");
     command->add_option("--pixels-per-degree", options->pixels_per_degree, "Of FLIP's viewer")->check(number_of_more_than(0));

@@ -5,8 +5,28 @@
 
 #include "core/scene/wording.h"
 #include "server/cli/checks.h"
+#include "server/cli/files.h"
 
 namespace penumbra {
+
+void add_font_option(CLI::App& command, std::string& path) {
+    command.add_option("--font", path, "Font file for texts (TrueType, OpenType); else DejaVu Sans")->envname("PENUMBRA_FONT");
+}
+
+void add_tone_lut_option(CLI::App& command, std::string& path) {
+    command.add_option("--tony-lut", path, "Table of the tone map tony: tony_mc_mapface.dds of its project")
+        ->envname("PENUMBRA_TONY_LUT");
+}
+
+std::shared_ptr<const ToneLut> read_tone_lut(const std::string& path) {
+    if (path.empty()) return nullptr;
+    constexpr std::size_t kMostBytes = std::size_t(64) << 20;
+    const std::string text = read_text(path, kMostBytes);
+    auto decoded = decode_tone_lut({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    if (const auto* why = std::get_if<std::string>(&decoded)) throw InputError(path + ": " + *why);
+    return std::make_shared<const ToneLut>(std::move(std::get<ToneLut>(decoded)));
+}
+
 void add_device_option(CLI::App& command, std::string& device) {
     command.add_option("--device", device, "auto, cpu, gpu, or an index as `penumbra info` lists them")
         ->envname("PENUMBRA_DEVICE")
@@ -22,6 +42,8 @@ void add_config_options(CLI::App& command, Config& config) {
     option("--port", config.port, "PENUMBRA_PORT", "Port; 0 takes a free one")->check(whole_number(0, 65535));
     option("--port-file", config.port_file, "PENUMBRA_PORT_FILE", "Write the port here once it listens");
     add_device_option(command, config.device);
+    add_font_option(command, config.font);
+    add_tone_lut_option(command, config.tone_lut);
     option("--queue", config.queue_capacity, "PENUMBRA_QUEUE", "Renders that may wait; more get 503")
         ->check(whole_number(1, 10000));
     // In whole MiB on the command line; bytes inside.

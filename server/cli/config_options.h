@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
 #include <string>
 
+#include "core/film/tone_lut.h"
 #include "server/service/config.h"
 
 namespace CLI {
@@ -16,6 +18,13 @@ namespace penumbra {
 void add_config_options(CLI::App& command, Config& config);
 
 // --device alone, with PENUMBRA_DEVICE behind it: shared by the commands that render.
+// --font FILE: what texts are set in.
+void add_font_option(CLI::App& command, std::string& path);
+// --tony-lut FILE: the table of the tone map "tony", which is no part of this program.
+void add_tone_lut_option(CLI::App& command, std::string& path);
+// Empty for an empty path. Throws InputError when there is no such table.
+std::shared_ptr<const ToneLut> read_tone_lut(const std::string& path);
+
 void add_device_option(CLI::App& command, std::string& device);
 
 }  // namespace penumbra

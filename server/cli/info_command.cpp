@@ -55,9 +55,9 @@ void add_info_command(CLI::App& app, CommandContext& context) {
         context.run = [&context, json, device]() -> int {
             const Engine& engine = context.engine;
             const auto listing = engine.list_devices();
-            const auto backend = engine.make_backend({.device = *device, .shader_dir = {}});
+            const auto backend = engine.make_backend({.device = *device, .shader_dir = {}, .tone_lut = {}});
             const SceneLimits limits = limits_of(Config{});
-            write_text("-", *json ? info_json(&backend->device(), &listing, limits, engine.unsupported)
+            write_text("-", *json ? info_json(&backend->device(), &listing, limits, engine.unsupported_with({}))
                                   : as_text(backend->device(), listing, limits));
             return kSuccess;
         };

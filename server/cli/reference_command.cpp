@@ -32,8 +32,9 @@ void interrupt(int) { interrupted = 1; }
 
 int solve_file(const ReferenceOptions& options) {
     const PictureFormat* format = find_format_of_file(options.output);
-    if (options.output != "-" && (format == nullptr || format->name != "pfm"))
-        throw InputError("--output takes a name that ends in .pfm, or -, not " + options.output);
+    // RGBE knows no NaN, which is what solid pixels hold.
+    if (options.output != "-" && (format == nullptr || format->name == "png" || format->name == "hdr"))
+        throw InputError("--output takes a name that ends in .pfm, .exr or .npy, or -, not " + options.output);
     if (options.output == "-" && stdout_is_terminal())
         throw InputError("a picture does not go to a terminal; use -o FILE or a pipe");
     const std::optional<Scene> scene = read_scene(options.scene, parse_sets(options.sets));
@@ -57,7 +58,7 @@ int solve_file(const ReferenceOptions& options) {
         complain("interrupted; nothing was written");
         return kWorldFailed;
     }
-    write_file(options.output, encode_pfm(solution.image));
+    write_file(options.output, encode_linear(solution.image, format == nullptr ? "pfm" : format->name));
     if (!options.quiet)
         std::fprintf(stderr, "%s: solved in %.2f s, %llu intervals\n", options.scene.c_str(), solution.seconds,
                      static_cast<unsigned long long>(solution.intervals));
@@ -70,7 +71,7 @@ void add_reference_command(CLI::App& app, CommandContext& context) {
     CLI::App* command = app.add_subcommand("reference", "Solve a scene exactly (slow, on the CPU): the truth");
     auto options = std::make_shared<ReferenceOptions>();
     command->add_option("scene", options->scene, "Scene file, - for the standard input")->required();
-    command->add_option("-o,--output", options->output, "Picture file (.pfm), - for the standard output; NaN where solid")->required();
+    command->add_option("-o,--output", options->output, "Picture file (.pfm, .exr, .npy), - for the standard output; NaN where solid")->required();
     command->add_option("--stride", options->stride, "Solve every N-th pixel in both axes; the others are NaN")
         ->check(whole_number(1, 4096));
     command->add_option("--threads", options->threads, "Threads, 0 for one each processor")->check(whole_number(0, 1024));

@@ -17,7 +17,7 @@ namespace penumbra {
 namespace {
 
 struct RenderOptions {
-    std::string scene, output, stats, format, device = "auto";
+    std::string scene, output, stats, format, device = "auto", tone_lut, font;
     std::vector<std::string> sets;
 };
 
@@ -39,7 +39,8 @@ FormatWishes wishes_of(const RenderOptions& options) {
 }
 
 int render_file(const RenderOptions& options, const Engine& engine) {
-    const Config config;
+    Config config;
+    config.font = options.font;
     const SceneLimits limits = limits_of(config);
     RenderRequest request;
     request.formats = wishes_of(options);
@@ -50,13 +51,14 @@ int render_file(const RenderOptions& options, const Engine& engine) {
     if (options.output == "-" && stdout_is_terminal()) {
         throw InputError("a picture does not go to a terminal; use -o FILE or a pipe");
     }
+    const std::shared_ptr<const ToneLut> tone_lut = read_tone_lut(options.tone_lut);
     const std::string text = read_text(options.scene, limits.text.max_bytes);
     request.text = text;
 
     // The device is asked for after the scene is known to be right: mistakes cost no start-up.
     const RenderResponse response =
-        render_to_bytes(request, limits, engine.unsupported, [&](const Scene& scene) {
-            return engine.make_backend({.device = options.device, .shader_dir = {}})->render(scene, {});
+        render_to_bytes(request, limits, engine.unsupported_with({.tone_lut = tone_lut != nullptr}), [&](const Scene& scene) {
+            return engine.make_backend({.device = options.device, .shader_dir = {}, .tone_lut = tone_lut})->render(scene, {});
         });
     if (response.failure != RenderFailure::none) {
         complain_about_scene(options.scene, response.problems, response.problems_left_out);
@@ -81,6 +83,8 @@ void add_render_command(CLI::App& app, CommandContext& context) {
         ->take_all();
     command->add_option("--stats", options->stats, "Write what ran and how long as JSON, - for the standard output");
     add_device_option(*command, options->device);
+    add_font_option(*command, options->font);
+    add_tone_lut_option(*command, options->tone_lut);
     command->callback([&context, options] {
         context.run = [&context, options]() -> int {
             try {

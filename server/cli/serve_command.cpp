@@ -56,15 +56,16 @@ struct Workers {
     BackendFactory make;
 };
 
-Workers workers_of(const Config& config, const Engine& engine) {
+Workers workers_of(const Config& config, const Engine& engine, std::shared_ptr<const ToneLut> tone_lut) {
     if (config.workers == 0) {
-        return {1, [&] { return engine.make_backend({.device = config.device, .shader_dir = {}}); }};
+        return {1, [&, tone_lut] { return engine.make_backend({.device = config.device, .shader_dir = {}, .tone_lut = tone_lut}); }};
     }
     const int processors = usable_processors();
     const int count = config.workers > 0 ? config.workers : std::max(processors / 4, 1);
     WorkerProcessOptions options;
     options.program = "/proc/self/exe";  // also when the file has been replaced since
     options.arguments = {"worker-process", "--device", config.device};
+    if (!config.tone_lut.empty()) options.arguments.insert(options.arguments.end(), {"--tony-lut", config.tone_lut});
     // They share the processors: llvmpipe's own count knows neither of the others nor of a quota.
     if (std::getenv("LP_NUM_THREADS") == nullptr) {
         options.environment = {{"LP_NUM_THREADS", std::to_string((processors + count - 1) / count)}};
@@ -76,14 +77,15 @@ Workers workers_of(const Config& config, const Engine& engine) {
 }
 
 int serve(const Config& config, const Engine& engine) {
+    const std::shared_ptr<const ToneLut> tone_lut = read_tone_lut(config.tone_lut);
     // Blocked before any thread exists, so that no thread but this one is interrupted.
     const sigset_t signals = ending_signals();
     ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
     const Log log(config.log_format);
-    const Workers workers = workers_of(config, engine);
+    const Workers workers = workers_of(config, engine, tone_lut);
     RenderWorker worker(workers.make, config.queue_capacity, log, warm_up_scenes(config.warm_up), workers.count);
-    RenderService service(worker, engine.unsupported, config);
+    RenderService service(worker, engine.unsupported_with({.tone_lut = tone_lut != nullptr}), config);
     HttpServer server(service, config, log);
     if (const std::string why = server.start(); !why.empty()) {
         complain(why);
@@ -134,7 +136,14 @@ void add_serve_command(CLI::App& app, CommandContext& context) {
     auto config = std::make_shared<Config>();
     add_config_options(*command, *config);
     command->callback([&context, config] {
-        context.run = [&context, config] { return serve(*config, context.engine); };
+        context.run = [&context, config]() -> int {
+            try {
+                return serve(*config, context.engine);
+            } catch (const InputError& error) {
+                complain(error.what());
+                return kBadInput;
+            }
+        };
     });
 }
 

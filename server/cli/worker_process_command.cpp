@@ -13,6 +13,7 @@ namespace {
 
 struct WorkerProcess {
     std::string device = "auto";
+    std::string tone_lut;
     int socket = -1, memory = -1;
 };
 
@@ -23,12 +24,13 @@ void add_worker_process_command(CLI::App& app, CommandContext& context) {
     command->group("");  // not in the help
     auto options = std::make_shared<WorkerProcess>();
     add_device_option(*command, options->device);
+    add_tone_lut_option(*command, options->tone_lut);
     command->add_option("--socket", options->socket)->required();
     command->add_option("--memory", options->memory)->required();
     command->callback([&context, options] {
         context.run = [&context, options] {
-            return run_worker_process(context.engine, {.device = options->device, .shader_dir = {}}, options->socket,
-                                      options->memory);
+            const RendererOptions renderer{.device = options->device, .shader_dir = {}, .tone_lut = read_tone_lut(options->tone_lut)};
+            return run_worker_process(context.engine, renderer, options->socket, options->memory);
         };
     });
 }

@@ -2,11 +2,14 @@
 #include "server/json/scene_builder.h"
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 
 #include "core/scene/wording.h"
+#include "server/json/sky_picture.h"
 #include "server/json/bitmap_reader.h"
+#include "server/json/outline_reader.h"
 #include "server/json/scene_keys.h"
 #include "server/json/value_reader.h"
 
@@ -20,8 +23,8 @@ constexpr double kUnread = std::numeric_limits<double>::quiet_NaN();
 
 class SceneBuilder {
 public:
-    SceneBuilder(const JsonTree& tree, const Limits& limits, ProblemList& problems)
-        : reader_(tree, problems), limits_(limits), bitmaps_(reader_, limits) {}
+    SceneBuilder(const JsonTree& tree, const Limits& limits, const FontSource& fonts, ProblemList& problems)
+        : reader_(tree, problems), limits_(limits), bitmaps_(reader_, limits), outlines_(reader_, limits, fonts) {}
 
     Scene build() {
         Scene scene;
@@ -33,6 +36,7 @@ public:
         read_version(root.key("version"), members.require("version"));
         read_canvas(root.key("canvas"), members.require("canvas"), scene.canvas);
         read_sky(root.key("sky"), members.find("sky"), scene.sky);
+        outlines_.set_pixel_size(scene.canvas.width > 0 ? scene.canvas.pixel_size() : 1);
         read_shapes(root.key("shapes"), members.find("shapes"), scene.shapes);
         read_lights(root.key("lights"), members.find("lights"), scene.lights);
         read_render(root.key("render"), members.find("render"), scene.render);
@@ -70,6 +74,11 @@ private:
                                            "a rectangle of four numbers [x, y, width, height]");
             canvas.view = ViewRect{v[0], v[1], v[2], v[3]};
         }
+        if (const NodeId region = members.find("region"); region != kNoNode) {
+            const auto r = reader_.integers(where.key("region"), region, 4,
+                                            "a part of the canvas in four whole numbers [x, y, width, height]");
+            canvas.region = PixelRect{r[0], r[1], r[2], r[3]};
+        }
         members.number("margin", canvas.margin);
         const Path floor = where.key("floor");
         if (const NodeId floor_id = members.find("floor"); is_object(floor, floor_id)) {
@@ -85,6 +94,7 @@ private:
         const Members members(reader_, where, id, kSkyKeys, "a sky");
         members.colour("radiance", sky.radiance);
         const NodeId gradient = members.find("gradient");
+        read_sky_picture(where, members, sky);
         if (gradient == kNoNode) {
             return;
         }
@@ -104,6 +114,44 @@ private:
              stop = reader_.node(stop).next_sibling) {
             sky.gradient.push_back(read_stop(list.index(sky.gradient.size()), stop));
         }
+    }
+
+    // One row of a picture, as the gradient that it is.
+    void read_sky_picture(const Path& where, const Members& members, Sky& sky) {
+        const NodeId image = members.find("image");
+        for (const std::string_view key : {"row", "scale"}) {
+            if (const NodeId id = members.find(key); id != kNoNode && image == kNoNode) {
+                reader_.report(where.key(key), id, "conflict", [] { return "is for a sky with an \"image\" only"; });
+            }
+        }
+        if (image == kNoNode) {
+            return;
+        }
+        if (members.find("radiance") != kNoNode || members.find("gradient") != kNoNode) {
+            reader_.report(where.key("image"), image, "conflict",
+                           [] { return "must not stand together with \"radiance\" or \"gradient\": keep one"; });
+        }
+        const auto texels = bitmaps_.read(where.key("image"), image);
+        double scale = 1;
+        members.number("scale", scale);
+        if (scale < 0 || scale > limits_.max_radiance) {
+            reader_.report(where.key("scale"), members.find("scale"), "out_of_range", [&] {
+                return "must be from 0 to " + number_text(limits_.max_radiance) + ", is " + number_text(scale);
+            });
+            scale = kUnread;
+        }
+        int row = texels ? texels->height / 2 : 0;
+        const std::string rows = "from 0 to " + std::to_string(texels ? texels->height - 1 : 0);
+        members.integer("row", row, rows);
+        if (!texels || std::isnan(scale)) {
+            return;
+        }
+        if (row < 0 || row >= texels->height) {
+            reader_.report(where.key("row"), members.find("row"), "out_of_range",
+                           [&] { return "must be " + rows + ", is " + std::to_string(row); });
+            return;
+        }
+        sky.gradient = sky_of_row(*texels, row, scale, limits_.max_sky_stops);
     }
 
     SkyStop read_stop(const Path& where, NodeId id) {
@@ -171,8 +219,14 @@ private:
             case 5:
                 shape.geometry = read_polygon(where, id, shape);
                 break;
-            default:
+            case 6:
                 shape.geometry = read_bitmap(where, id);
+                break;
+            case 7:
+                shape.geometry = outlines_.path(where, id, shape);
+                break;
+            default:
+                shape.geometry = outlines_.text(where, id, shape);
                 break;
         }
         return shape;
@@ -276,6 +330,7 @@ private:
             PointLight light;
             members.need_pair("position", "a point [x, y]", light.position);
             members.need_colour("intensity", light.intensity);
+            members.number("radius", light.radius);
             return light;
         }
         if (*type == 1) {
@@ -310,12 +365,24 @@ private:
         if (const auto quality = read_choice(members, where, "quality", kQualities)) {
             render.quality = std::array{Quality::draft, Quality::standard, Quality::high}[*quality];
         }
-        members.integer("bounces", render.bounces,
-                        "from 0 to " + std::to_string(limits_.max_bounces));
+        read_bounces(members, where, render);
+        members.number("tolerance", render.tolerance);
         if (const auto skip = read_choice(members, where, "skip", kSkips)) {
             render.skip = *skip == 0 ? Skip::all : Skip::none;
         }
         members.string("view", render.view);
+    }
+
+    void read_bounces(const Members& members, const Path& where, RenderSettings& render) {
+        const NodeId id = members.find("bounces");
+        if (id != kNoNode && reader_.node(id).kind == NodeKind::string) {
+            constexpr std::string_view kWords[] = {"converged"};
+            render.converged = reader_.choice(where.key("bounces"), id, kWords).has_value();
+            render.bounces = limits_.max_converging_bounces;
+            return;
+        }
+        members.integer("bounces", render.bounces,
+                        "from 0 to " + std::to_string(limits_.max_bounces) + ", or \"converged\"");
     }
 
     void read_output(const Path& where, NodeId id, OutputSettings& output) {
@@ -324,24 +391,71 @@ private:
         }
         const Members members(reader_, where, id, kOutputKeys, "the output settings");
         members.string("format", output.format);
-        members.integer("bit_depth", output.bit_depth, "8 or 16");
+        if (const NodeId depth = members.find("bit_depth"); depth != kNoNode) {
+            output.bit_depth = reader_.integer(where.key("bit_depth"), depth, "8, 16 or 32");
+        }
         members.boolean("antialias", output.antialias);
         if (const auto solids = read_choice(members, where, "solids", kSolids)) {
             output.solids = *solids == 0 ? Solids::emission : Solids::lit;
         }
-        members.number("exposure", output.exposure_ev);
+        if (const NodeId exposure = members.find("exposure"); exposure != kNoNode) {
+            read_exposure(where.key("exposure"), exposure, output);
+        }
         members.string("tonemap", output.tonemap);
+        if (const NodeId look = members.find("look"); look != kNoNode) {
+            if (const auto word = reader_.string(where.key("look"), look)) {
+                output.look = std::string(*word);
+            }
+        }
+        if (const NodeId white = members.find("white"); white != kNoNode) {
+            output.white = reader_.number(where.key("white"), white);
+        }
+        if (const auto dither = read_choice(members, where, "dither", kDithers)) {
+            output.dither = *dither == 0 ? Dither::none : Dither::triangular;
+        }
+    }
+
+    // A number of stops, "auto", a camera's settings, or automatic with its key.
+    void read_exposure(const Path& where, NodeId id, OutputSettings& output) {
+        const NodeKind kind = reader_.node(id).kind;
+        if (kind == NodeKind::string) {
+            if (reader_.node(id).string == "auto") {
+                output.auto_key = kDefaultKey;
+            } else {
+                reader_.report(where, id, "unknown_value", [&] {
+                    return "must be a number of stops or \"auto\", is " + in_quotes(reader_.node(id).string);
+                });
+            }
+        } else if (kind == NodeKind::object && reader_.tree().child(id, "key") != kNoNode) {
+            const Members members(reader_, where, id, kAutoExposureKeys, "an automatic exposure");
+            double key = kUnread;
+            members.number("key", key);
+            output.auto_key = key;
+        } else if (kind == NodeKind::object) {
+            const Members members(reader_, where, id, kCameraKeys, "a camera's exposure");
+            Camera camera;
+            members.need_number("aperture", camera.aperture);
+            members.need_number("shutter", camera.shutter_s);
+            members.number("iso", camera.iso);
+            members.number("compensation", output.exposure_ev);
+            output.camera = camera;
+        } else if (reader_.expect(where, id, NodeKind::number,
+                                  "a number of stops, \"auto\", a camera's {\"aperture\", \"shutter\", \"iso\"} or "
+                                  "{\"key\"}")) {
+            output.exposure_ev = reader_.number(where, id);
+        }
     }
 
     ValueReader reader_;
     const Limits& limits_;
     BitmapReader bitmaps_;
+    OutlineReader outlines_;
 };
 
 }  // namespace
 
-Scene build_scene(const JsonTree& tree, const Limits& limits, ProblemList& problems) {
-    return SceneBuilder(tree, limits, problems).build();
+Scene build_scene(const JsonTree& tree, const Limits& limits, const FontSource& fonts, ProblemList& problems) {
+    return SceneBuilder(tree, limits, fonts, problems).build();
 }
 
 }  // namespace penumbra

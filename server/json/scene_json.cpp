@@ -38,6 +38,9 @@ std::span<const std::string_view> words_at(std::string_view pointer) {
     if (pointer == "/output/format") {
         return known_formats();
     }
+    if (pointer == "/output/look") {
+        return known_looks();
+    }
     return pointer == "/output/tonemap" ? known_tonemaps() : std::span<const std::string_view>();
 }
 
@@ -83,7 +86,7 @@ ParsedScene no_json(std::string_view text, TextError error) {
 }  // namespace
 
 ParsedScene parse_scene(std::string_view text, const Limits& limits, const TextLimits& text_limits,
-                        const std::vector<Override>& overrides) {
+                        const std::vector<Override>& overrides, const FontSource& fonts) {
     JsonTree tree;
     ParsedText parsed = parse_text(text, text_limits, tree);
     if (parsed.error) {
@@ -92,7 +95,7 @@ ParsedScene parse_scene(std::string_view text, const Limits& limits, const TextL
     ProblemList problems(text_limits.max_problems);
     add_duplicates(tree, problems);
     apply_overrides(tree, overrides, text_limits, problems);
-    Scene scene = build_scene(tree, limits, problems);
+    Scene scene = build_scene(tree, limits, fonts, problems);
     if (!problems.full()) {
         add_validation(tree, validate(scene, limits), problems);
     }

@@ -11,6 +11,7 @@
 #include "core/scene/limits.h"
 #include "core/scene/problem.h"
 #include "core/scene/scene.h"
+#include "server/json/font_source.h"
 
 namespace penumbra {
 
@@ -47,7 +48,7 @@ struct ParsedScene {
 // Parses, builds, validates (core/scene/validate.h). Collects as many problems as it can in one go:
 // unknown keys (with the nearest known one), wrong types, missing keys, bad pictures, ranges, limits.
 ParsedScene parse_scene(std::string_view text, const Limits& limits = {}, const TextLimits& text_limits = {},
-                        const std::vector<Override>& overrides = {});
+                        const std::vector<Override>& overrides = {}, const FontSource& fonts = FontSource());
 
 // One line for a terminal: "/shapes/3/radius (line 12, column 40): must be more than 0, is -1"; with
 // "(--set /shapes/3/radius)" as the place of what an override wrote.

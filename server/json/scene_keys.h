@@ -9,17 +9,22 @@ namespace penumbra {
 
 inline constexpr std::string_view kSceneKeys[] = {"version", "canvas", "sky",   "shapes",
                                                   "lights",  "render", "output"};
-inline constexpr std::string_view kCanvasKeys[] = {"width", "height", "view", "margin", "floor"};
+inline constexpr std::string_view kCanvasKeys[] = {"width", "height", "view",
+                                                   "region", "margin", "floor"};
 inline constexpr std::string_view kFloorKeys[] = {"albedo"};
-inline constexpr std::string_view kSkyKeys[] = {"radiance", "gradient"};
+inline constexpr std::string_view kSkyKeys[] = {"radiance", "gradient", "image", "row", "scale"};
 inline constexpr std::string_view kStopKeys[] = {"angle", "radiance"};
-inline constexpr std::string_view kRenderKeys[] = {"method", "quality", "bounces", "skip", "view"};
+inline constexpr std::string_view kRenderKeys[] = {"method", "quality", "bounces", "tolerance", "skip", "view"};
 inline constexpr std::string_view kOutputKeys[] = {"format", "bit_depth", "antialias",
-                                                   "solids", "exposure",  "tonemap"};
+                                                   "solids", "exposure",  "tonemap",
+                                                   "look",   "white",     "dither"};
+// An exposure that is an object: a camera's, or the automatic one's.
+inline constexpr std::string_view kCameraKeys[] = {"aperture", "shutter", "iso", "compensation"};
+inline constexpr std::string_view kAutoExposureKeys[] = {"key"};
 inline constexpr std::string_view kColourKeys[] = {"color", "intensity"};
 
 inline constexpr std::string_view kShapeTypes[] = {"circle",   "ellipse", "rect",  "line",
-                                                   "polyline", "polygon", "bitmap"};
+                                                   "polyline", "polygon", "bitmap", "path", "text"};
 inline constexpr std::string_view kCircleKeys[] = {"type", "emission", "albedo", "center",
                                                    "radius"};
 inline constexpr std::string_view kEllipseKeys[] = {"type",   "emission", "albedo",
@@ -34,8 +39,11 @@ inline constexpr std::string_view kPolygonKeys[] = {"type", "emission", "albedo"
 inline constexpr std::string_view kBitmapKeys[] = {
     "type", "image", "position", "size", "emission_scale", "solid_above", "as"};
 
+inline constexpr std::string_view kPathKeys[] = {"type", "emission", "albedo", "d", "fill_rule", "position", "scale"};
+inline constexpr std::string_view kTextKeys[] = {"type", "emission", "albedo", "text", "position", "size", "anchor"};
+
 inline constexpr std::string_view kLightTypes[] = {"point", "spot", "directional"};
-inline constexpr std::string_view kPointLightKeys[] = {"type", "position", "intensity"};
+inline constexpr std::string_view kPointLightKeys[] = {"type", "position", "intensity", "radius"};
 inline constexpr std::string_view kSpotKeys[] = {"type",        "position",    "direction",
                                                  "inner_angle", "outer_angle", "intensity"};
 inline constexpr std::string_view kDirectionalKeys[] = {"type", "direction", "irradiance"};
@@ -43,6 +51,9 @@ inline constexpr std::string_view kDirectionalKeys[] = {"type", "direction", "ir
 inline constexpr std::string_view kQualities[] = {"draft", "standard", "high"};
 inline constexpr std::string_view kSkips[] = {"all", "none"};
 inline constexpr std::string_view kSolids[] = {"emission", "lit"};
+inline constexpr std::string_view kDithers[] = {"none", "triangular"};
+inline constexpr std::string_view kFillRules[] = {"nonzero", "evenodd"};
+inline constexpr std::string_view kAnchors[] = {"start", "middle", "end"};
 inline constexpr std::string_view kUses[] = {"emission", "albedo"};
 
 }  // namespace penumbra

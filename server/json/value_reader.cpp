@@ -45,6 +45,12 @@ constexpr OtherName kOtherNames[] = {
     {"vertices", "points"},
     {"thickness", "width"},
     {"stroke", "width"},
+    {"path", "d"},
+    {"data", "d"},
+    {"content", "text"},
+    {"font_size", "size"},
+    {"text_anchor", "anchor"},
+    {"fill-rule", "fill_rule"},
     {"r", "radius"},
     {"size", "radius"},
     {"start", "from"},
@@ -53,6 +59,11 @@ constexpr OtherName kOtherNames[] = {
     {"url", "image"},
     {"threshold", "solid_above"},
     {"ev", "exposure"},
+    {"f", "aperture"},
+    {"f_number", "aperture"},
+    {"shutter_speed", "shutter"},
+    {"ev", "compensation"},
+    {"white_point", "white"},
     {"samples", "quality"},
 };
 
@@ -66,6 +77,7 @@ constexpr Home kHomes[] = {
     {"radiance", "sky"},     {"gradient", "sky"},  {"method", "render"},   {"quality", "render"},
     {"bounces", "render"},   {"skip", "render"},   {"format", "output"},   {"bit_depth", "output"},
     {"antialias", "output"}, {"solids", "output"}, {"exposure", "output"}, {"tonemap", "output"},
+    {"look", "output"},      {"white", "output"},  {"dither", "output"},
 };
 
 std::string_view other_name(std::string_view key, std::span<const std::string_view> known) {
@@ -170,6 +182,28 @@ std::vector<double> ValueReader::numbers(const Path& where, NodeId id, std::size
     NodeId element = node(id).first_child;
     for (std::size_t i = 0; i < count; ++i) {
         values[i] = number(where.index(i), element);
+        element = node(element).next_sibling;
+    }
+    return values;
+}
+
+std::vector<int> ValueReader::integers(const Path& where, NodeId id, std::size_t count,
+                                       std::string_view form) {
+    std::vector<int> values(count, 0);
+    if (!expect(where, id, NodeKind::array, form)) {
+        return values;
+    }
+    if (node(id).child_count != count) {
+        report(where, id, "wrong_length", [&] {
+            return "must be " + std::string(form) + ", holds " +
+                   std::to_string(node(id).child_count) +
+                   (node(id).child_count == 1 ? " value" : " values");
+        });
+        return values;
+    }
+    NodeId element = node(id).first_child;
+    for (std::size_t i = 0; i < count; ++i) {
+        values[i] = integer(where.index(i), element, "within the canvas");
         element = node(element).next_sibling;
     }
     return values;

@@ -39,6 +39,8 @@ public:
     // The elements of a list of `count` numbers; NaN where there are none.
     std::vector<double> numbers(const Path& where, NodeId id, std::size_t count,
                                 std::string_view form);
+    std::vector<int> integers(const Path& where, NodeId id, std::size_t count,
+                              std::string_view form);
 
     bool expect(const Path& where, NodeId id, NodeKind kind, std::string_view form);
 

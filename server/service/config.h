@@ -19,6 +19,8 @@ struct Config {
     std::string port_file;
 
     std::string device = "auto";
+    std::string font;      // file; empty: Debian's DejaVu Sans
+    std::string tone_lut;  // file; empty: scenes with the tone map "tony" are refused
 
     // Renders waiting behind the one that runs. Each waiting one holds a parsed scene (a few MB) and a
     // client; 16 standard renders of 512 x 512 are some seconds on two cores, which clients sit out.

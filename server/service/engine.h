@@ -37,7 +37,11 @@ using BackendFactory = std::function<std::unique_ptr<RenderBackend>()>;
 
 struct Engine {
     std::function<std::unique_ptr<RenderBackend>(const RendererOptions&)> make_backend;
-    std::function<Problems(const Scene&)> unsupported;
+    std::function<Problems(const Scene&, const Features&)> unsupported;
+    // The same, bound to what there is.
+    std::function<Problems(const Scene&)> unsupported_with(const Features& features) const {
+        return [ask = unsupported, features](const Scene& scene) { return ask(scene, features); };
+    }
     std::function<std::vector<DeviceListing>()> list_devices;
 };
 

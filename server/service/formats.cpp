@@ -9,9 +9,12 @@
 namespace penumbra {
 namespace {
 
-constexpr std::array<PictureFormat, 2> kFormats{{
+constexpr std::array<PictureFormat, 5> kFormats{{
     {"png", "image/png", ".png"},
     {"pfm", "image/x-pfm", ".pfm"},
+    {"exr", "image/x-exr", ".exr"},
+    {"hdr", "image/vnd.radiance", ".hdr"},
+    {"npy", "application/x-npy", ".npy"},
 }};
 
 bool ends_with_ignoring_case(std::string_view text, std::string_view end) {
@@ -98,9 +101,17 @@ std::string to_string(const FormatWishes& wishes) {
     return text;
 }
 
-Bytes encode_picture(const RenderResult& result) {
+Bytes encode_linear(const ImageF& image, std::string_view format, int bit_depth) {
+    if (format == "exr") return encode_exr(image, bit_depth == 16 ? ExrSamples::half : ExrSamples::full);
+    if (format == "hdr") return encode_hdr(image);
+    if (format == "npy") return encode_npy(image);
+    return encode_pfm(image);
+}
+
+Bytes encode_picture(const RenderResult& result, std::string_view format, int bit_depth) {
     if (const Image8* pixels = std::get_if<Image8>(&result.picture)) return encode_png(*pixels);
-    return encode_pfm(std::get<ImageF>(result.picture));
+    if (const Image16* pixels = std::get_if<Image16>(&result.picture)) return encode_png(*pixels);
+    return encode_linear(std::get<ImageF>(result.picture), format, bit_depth);
 }
 
 }  // namespace penumbra

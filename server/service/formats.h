@@ -21,7 +21,7 @@ struct PictureFormat {
 std::span<const PictureFormat> picture_formats();
 const PictureFormat* find_format(std::string_view name);
 const PictureFormat* find_format_of_file(std::string_view path);  // by extension, in any case
-std::string format_names();                                       // "png, pfm"
+std::string format_names();                                       // "png, pfm, ..."
 
 // Which formats a client takes, and how gladly (q of RFC 9110, 0 is never).
 struct FormatWishes {
@@ -43,7 +43,8 @@ FormatWishes only_format(std::string_view name);
 // One that differs tells other wishes apart: "png;q=1.000, pfm;q=0.500, *;q=1.000".
 std::string to_string(const FormatWishes& wishes);
 
-// The renderer gives 8-bit pixels or linear ones as the scene's output.format asks.
-Bytes encode_picture(const RenderResult& result);
+// The renderer gives pixels for display or linear ones as the scene's output.format asks; `bit_depth` tells an EXR's halves.
+Bytes encode_picture(const RenderResult& result, std::string_view format, int bit_depth);
+Bytes encode_linear(const ImageF& image, std::string_view format, int bit_depth = 0);
 
 }  // namespace penumbra

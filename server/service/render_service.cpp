@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <fstream>
+#include <iterator>
 
 #include "core/scene/normal_form.h"
+#include "core/scene/words.h"
 #include "server/service/digest.h"
 #include "server/service/identity.h"
 
@@ -34,15 +37,22 @@ private:
     std::counting_semaphore<>& slots_;
 };
 
-SharedAnswer make_answer(RenderResult&& result, std::string format) {
+SharedAnswer make_answer(RenderResult&& result, const OutputSettings& output) {
     auto answer = std::make_shared<Answer>();
     const Clock::time_point start = Clock::now();
-    answer->picture = encode_picture(result);
+    answer->picture = encode_picture(result, output.format, bit_depth_of(output.format, output.bit_depth));
     answer->picture.shrink_to_fit();  // it may be kept for long
-    answer->format = std::move(format);
+    answer->format = output.format;
     answer->encode_ms = ms_since(start);
     answer->stats = std::move(result.stats);
     return answer;
+}
+
+// Pictures with the tone map "tony" follow from its table as well. Empty without one.
+std::string digest_of_file(const std::string& path) {
+    if (path.empty()) return "";
+    std::ifstream file(path, std::ios::binary);
+    return sha256({std::string{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}});
 }
 
 // The key of texts that are worth remembering: a few hundred bytes each.
@@ -63,13 +73,14 @@ SceneLimits limits_of(const Config& config) {
     limits.scene.max_canvas_pixels = std::min(limits.scene.max_canvas_pixels, config.max_pixels);
     limits.text.max_bytes = config.max_body_bytes;
     limits.text.max_string_bytes = std::min(limits.text.max_string_bytes, config.max_body_bytes);
+    limits.fonts = std::make_shared<const FontSource>(config.font);
     return limits;
 }
 
 CheckedScene check_scene(const RenderRequest& request, const SceneLimits& limits,
                          const UnsupportedFeatures& unsupported) {
     CheckedScene checked;
-    ParsedScene parsed = parse_scene(request.text, limits.scene, limits.text, request.overrides);
+    ParsedScene parsed = parse_scene(request.text, limits.scene, limits.text, request.overrides, *limits.fonts);
     if (!parsed.scene) {
         checked.failure = parsed.is_json ? RenderFailure::invalid_scene : RenderFailure::not_json;
         checked.problems = std::move(parsed.problems);
@@ -98,16 +109,15 @@ RenderResponse render_to_bytes(const RenderRequest& request, const SceneLimits& 
     if (checked.failure != RenderFailure::none) return refused(std::move(checked));
     RenderResponse response;
     response.parse_ms = ms_since(start);
-    const std::string format = checked.scene->output.format;
-    response.answer = make_answer(render(*checked.scene), format);
+    response.answer = make_answer(render(*checked.scene), checked.scene->output);
     return response;
 }
 
 // One render that one or more requests wait for. The first of them that sees it done encodes it for all.
 struct RenderService::Flight {
+    OutputSettings output;
     std::mutex mutex;
     std::condition_variable changed;
-    std::string format;  // of the answer
     int waiting = 1;
     StopFlag stop = std::make_shared<std::atomic<bool>>(false);
     std::optional<RenderOutcome> outcome;
@@ -128,6 +138,7 @@ RenderService::RenderService(RenderWorker& worker, UnsupportedFeatures unsupport
       parse_slots_(std::ptrdiff_t(std::max<std::size_t>(config.parse_slots, 1))),
       keys_(kKnownTexts),
       cache_(config.cache_bytes),
+      table_id_(digest_of_file(config.tone_lut)),
       lethal_(kKnownTexts) {}
 
 RenderService::~RenderService() = default;
@@ -138,7 +149,7 @@ RenderService::CacheFigures RenderService::cache_figures() const {
 
 std::string RenderService::tag_of(const std::string& key) const {
     const std::string device = device_class(worker_.status().device);
-    return device.empty() ? "" : sha256({key, build_id(), device});
+    return device.empty() ? "" : sha256({key, build_id(), device, table_id_});
 }
 
 CheckedScene RenderService::check(const RenderRequest& request, const std::string& text_key, std::string& key) {
@@ -160,7 +171,10 @@ RenderResponse RenderService::render(const RenderRequest& request) {
     const auto parse = [&] {
         // A scene that cannot be rendered now is not worth its parsing.
         if (const auto refusal = worker_.refusal()) {
-            checked.failure = failure_of(*refusal);
+            // Unless an equal request has made its key known meanwhile: its picture can be shared, which takes no place.
+            const bool known = !key.empty();
+            if (!known) key = keys_.find(text_key);
+            if (known || key.empty()) checked.failure = failure_of(*refusal);
         } else {
             checked = check(request, text_key, key);
         }
@@ -189,12 +203,15 @@ RenderResponse RenderService::render(const RenderRequest& request) {
         }
     }
     std::shared_ptr<Flight> flight = join(key);
-    if (!flight) {
-        if (!checked.scene && !parse()) return refused(std::move(checked));
+    if (!flight && !checked.scene && !parse()) {
+        flight = join(key);  // an equal one may have taken the last place just now
+        if (!flight) return refused(std::move(checked));
+    }
+    if (flight) {
+        response.source = Source::shared;
+    } else {
         flight = begin(key, std::make_shared<const Scene>(std::move(*checked.scene)), response);
         if (!flight) return response;
-    } else {
-        response.source = Source::shared;
     }
     response.parse_ms = ms_since(start);
     wait_for(request, key, *flight, response);
@@ -225,7 +242,7 @@ std::shared_ptr<RenderService::Flight> RenderService::begin(const std::string& k
         return flight;
     }
     auto flight = std::make_shared<Flight>();
-    flight->format = scene->output.format;
+    flight->output = scene->output;
     const auto done = [flight](RenderOutcome outcome) {
         {
             const std::lock_guard inner(flight->mutex);
@@ -291,7 +308,7 @@ void RenderService::finish(const std::string& key, Flight& flight, RenderOutcome
     std::string error = std::move(outcome.error);
     try {
         if (outcome.result) {
-            answer = make_answer(std::move(*outcome.result), flight.format);
+            answer = make_answer(std::move(*outcome.result), flight.output);
             // Only now is it certain which device it was.
             if (const std::string tag = tag_of(key); !tag.empty()) stored = cache_.put(tag, answer);
         }

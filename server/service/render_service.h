@@ -79,6 +79,7 @@ using SceneRenderer = std::function<RenderResult(const Scene&)>;
 struct SceneLimits {
     Limits scene;
     TextLimits text;
+    std::shared_ptr<const FontSource> fonts = std::make_shared<const FontSource>();
 };
 SceneLimits limits_of(const Config& config);
 
@@ -140,6 +141,7 @@ private:
     std::counting_semaphore<> parse_slots_;
     TextMemo keys_;  // of right scenes, by their text
     AnswerCache cache_;
+    std::string table_id_;  // of the tone map "tony"
     TextMemo lethal_;  // keys of scenes that have cost two renderers
     std::atomic<bool> stopping_{false};
     std::mutex flights_mutex_;

@@ -24,7 +24,7 @@ Engine real_engine() {
     engine.make_backend = [](const RendererOptions& options) -> std::unique_ptr<RenderBackend> {
         return std::make_unique<RendererBackend>(options);
     };
-    engine.unsupported = [](const Scene& scene) { return unsupported(scene); };
+    engine.unsupported = [](const Scene& scene, const Features& features) { return unsupported(scene, features); };
     engine.list_devices = [] { return Renderer::list_devices(); };
     return engine;
 }

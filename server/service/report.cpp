@@ -129,6 +129,7 @@ std::string stats_json(const RenderResponse& response) {
                  {"parse_ms", response.parse_ms},
                  {"encode_ms", response.answer->encode_ms},
                  {"gpu_bytes", stats.gpu_bytes},
+                 {"lost_rays", stats.lost_rays},
                  {"passes", Json::array()},
                  {"skipped", Json::array()}};
     for (const PassStats& pass : stats.passes) {
@@ -139,7 +140,8 @@ std::string stats_json(const RenderResponse& response) {
                                   {"height", pass.height},
                                   {"dispatches", pass.dispatches},
                                   {"rays", pass.rays},
-                                  {"bytes", pass.bytes}});
+                                  {"bytes", pass.bytes},
+                                  {"points", pass.points}});
     }
     for (const SkippedWork& work : stats.skipped) {
         json["skipped"].push_back({{"what", work.what}, {"why", work.why}, {"saved", work.saved}});

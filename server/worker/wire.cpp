@@ -7,8 +7,8 @@ namespace penumbra {
 
 template <class A>
 void fields(A& archive, Like<A, PassStats>& pass) {
-    auto& [name, gpu_ms, wall_ms, width, height, dispatches, rays, bytes, cpu_ms] = pass;
-    archive(name, gpu_ms, wall_ms, width, height, dispatches, rays, bytes, cpu_ms);
+    auto& [name, gpu_ms, wall_ms, width, height, dispatches, rays, bytes, cpu_ms, points] = pass;
+    archive(name, gpu_ms, wall_ms, width, height, dispatches, rays, bytes, cpu_ms, points);
 }
 template <class A>
 void fields(A& archive, Like<A, SkippedWork>& work) {
@@ -17,8 +17,8 @@ void fields(A& archive, Like<A, SkippedWork>& work) {
 }
 template <class A>
 void fields(A& archive, Like<A, RenderStats>& stats) {
-    auto& [device, method, reason, width, height, total_ms, gpu_bytes, passes, skipped] = stats;
-    archive(device, method, reason, width, height, total_ms, gpu_bytes, passes, skipped);
+    auto& [device, method, reason, width, height, total_ms, gpu_bytes, lost_rays, passes, skipped] = stats;
+    archive(device, method, reason, width, height, total_ms, gpu_bytes, lost_rays, passes, skipped);
 }
 template <class A>
 void fields(A& archive, Like<A, DeviceInfo>& device) {

@@ -97,7 +97,7 @@ Scene lamp_and_walls(int width, int height, Quality quality) {
 }
 
 void expect_as_twin(const Scene& scene, const std::string& what) {
-    const Plan plan = make_plan(scene, {});
+    const Plan plan = pass_plan(scene);
     const Frame frame = run_frame(scene, plan);
     const std::vector<TwinCascade> twin = twin_cascades(scene, plan);
     for (std::size_t level = 0; level < twin.size(); ++level) {
@@ -138,7 +138,7 @@ TEST(Cascade, AsItsTwinUnderAGradientSkyWithAMargin) {
 TEST(Cascade, AsItsTwinWithoutShapes) {
     Scene scene = rc_canvas(24, 17);
     scene.sky.gradient = {{10, {0.5, 0, 0}}, {120, {0, 0.7, 0}}, {250, {0.3, 0.3, 0.3}}};
-    const Plan plan = make_plan(scene, {});
+    const Plan plan = pass_plan(scene);
     const Frame frame = run_frame(scene, plan);
     const std::vector<TwinCascade> twin = twin_cascades(scene, plan);
     for (std::size_t level = 0; level < twin.size(); ++level) {
@@ -151,7 +151,7 @@ TEST(Cascade, AsItsTwinWithoutShapes) {
 TEST(Cascade, OddAndEvenCountsGiveTheSamePicture) {
     // Errata E-4. One more cascade at the far end sees nothing that the domain holds.
     const Scene scene = lamp_and_walls(24, 17, Quality::standard);
-    Plan plan = make_plan(scene, {});
+    Plan plan = pass_plan(scene);
     const Frame fewer = run_frame(scene, plan);
     plan.cascades = plan_cascades(plan.canvas, plan.cascades.back().end * 1.01, cascade_settings(Quality::standard));
     ASSERT_EQ(plan.cascades.size(), fewer.cascades.size() + 1);
@@ -162,7 +162,7 @@ TEST(Cascade, OddAndEvenCountsGiveTheSamePicture) {
 
 TEST(Cascade, BandsChangeNothing) {
     Scene scene = lamp_and_walls(61, 43, Quality::high);
-    const Plan plan = make_plan(scene, {});
+    const Plan plan = pass_plan(scene);
     const Frame whole = run_frame(scene, plan);
     const Frame bands = run_frame(scene, plan, PassSettings{900, 1200, 300});
     ASSERT_EQ(whole.cascades.size(), bands.cascades.size());
@@ -174,7 +174,7 @@ TEST(Cascade, BandsChangeNothing) {
 TEST(Cascade, WritesNothingOutsideItsExtent) {
     shared_context();
     const Scene scene = rc_canvas(13, 7);
-    const Plan plan = make_plan(scene, {});
+    const Plan plan = pass_plan(scene);
     const SceneBuffers buffers(pack_scene(scene, 1), scene.sky, plan);
     buffers.bind();
     const DistanceField field = DistancePass::empty_field(plan);

@@ -25,7 +25,7 @@ Point pixel_centre(const Scene& scene, const Plan& plan, int x, int y) {
 // Every pixel of the grid within `bound` pixels of the exact distance (`inside_bound` inside), the material the exact
 // one.
 void expect_exact(const Scene& scene, double bound, const std::string& what, double inside_bound = 0) {
-    const Plan plan = make_plan(scene, {});
+    const Plan plan = pass_plan(scene);
     const Field field = run_distance(scene, plan);
     ASSERT_EQ(field.size, plan.grid.size);
     const double side = scene.canvas.pixel_size();
@@ -82,6 +82,8 @@ TEST(Distance, EveryTypeAsInDoublePrecision) {
         {"closed polyline", Polyline{{{3.1, 4.2}, {30.7, 6.9}, {12.2, 25.3}}, 2.2, true}},
         {"polygon", Polygon{{{3.1, 4.2}, {30.7, 6.9}, {20.2, 12.1}, {12.2, 25.3}}}},
         {"polygon that crosses itself", pentagram()},
+        {"polygon with a hole and a piece apart",
+         Polygon{{{3.1, 4.2}, {24.7, 3.9}, {22.2, 25.1}, {4.2, 24.3}, {8.1, 9.2}, {17.3, 8.8}, {15.2, 18.3}, {27.1, 20.2}, {34.2, 21.7}, {29.3, 27.1}}, {4, 7}}},
         {"outside the view", Circle{{-40, 70}, 9}},
     };
     // Numbers stay below 100, where a float's steps are 4e-6; a few operations each.
@@ -151,7 +153,7 @@ TEST(Distance, SlicesAndBandsChangeNothing) {
         scene.shapes.push_back(shape(Circle{at, numbers.between(0.5, 6)}));
         scene.shapes.push_back(shape(Polyline{{at, at + Point(4, 1), at + Point(1, 5)}, 0.7, true}));
     }
-    Plan plan = make_plan(scene, {});
+    Plan plan = pass_plan(scene);
     plan.list_shapes = false;
     ASSERT_EQ(plan.shape_slices.size(), 1u);
     const Field whole = run_distance(scene, plan);
@@ -165,7 +167,7 @@ TEST(Distance, SlicesAndBandsChangeNothing) {
 TEST(Distance, WritesNothingOutsideItsExtent) {
     shared_context();
     const Scene scene = with(canvas(37, 29), {shape(Circle{{18.3, 14.1}, 6.2})});
-    const Plan plan = make_plan(scene, {});
+    const Plan plan = pass_plan(scene);
     const SceneBuffers buffers(pack_scene(scene, 1), scene.sky, plan);
     buffers.bind();
     DistanceField field{gl::Texture2D(GL_R32F, {64, 48}), gl::Texture2D(GL_R32I, {64, 48})};
@@ -193,7 +195,7 @@ TEST(Distance, WritesNothingOutsideItsExtent) {
 
 TEST(Distance, EmptyFieldIsAsFarAsTheDiagonal) {
     shared_context();
-    const Plan plan = make_plan(canvas(4096, 300), {});
+    const Plan plan = pass_plan(canvas(4096, 300));
     const Field field = read_field(DistancePass::empty_field(plan));
     EXPECT_EQ(field.size, glm::ivec2(1));
     EXPECT_FLOAT_EQ(field.distance[0], std::hypot(4096.0f, 300.0f));

@@ -12,6 +12,7 @@
 #include "core/gl/program.h"
 #include "glsl/cascade.h"
 #include "glsl/compose.h"
+#include "glsl/delta.h"
 #include "glsl/distance.h"
 #include "glsl/exact.h"
 #include "glsl/hrc.h"
@@ -68,21 +69,31 @@ Offsets exact_fields() {
             FIELD(ExactParams, sky_nodes), FIELD(ExactParams, cell), FIELD(ExactParams, level),
             FIELD(ExactParams, first_point), FIELD(ExactParams, tile_points),
             FIELD(ExactParams, first_count), FIELD(ExactParams, capacity), FIELD(ExactParams, continues),
-            FIELD(ExactParams, pad4a), FIELD(ExactParams, tolerance), FIELD(ExactParams, kink_cell),
+            FIELD(ExactParams, light_scale), FIELD(ExactParams, tolerance), FIELD(ExactParams, kink_cell),
             FIELD(ExactParams, floor_share), FIELD(ExactParams, ask_first), FIELD(ExactParams, strict_dark),
             FIELD(ExactParams, pad0), FIELD(ExactParams, pad1), FIELD(ExactParams, root_counts),
-            FIELD(ExactParams, root_lights), FIELD(ExactParams, wide), FIELD(ExactParams, pad2),
-            FIELD(ExactParams, pad5), FIELD(ExactParams, pad6)};
+            FIELD(ExactParams, root_lights), FIELD(ExactParams, wide), FIELD(ExactParams, jobs),
+            FIELD(ExactParams, list_origin), FIELD(ExactParams, window),
+            FIELD(ExactParams, fill_first), FIELD(ExactParams, fill_row), FIELD(ExactParams, pad7)};
+}
+
+Offsets delta_fields() {
+    return {FIELD(DeltaParams, origin), FIELD(DeltaParams, extent), FIELD(DeltaParams, border),
+            FIELD(DeltaParams, tiles), FIELD(DeltaParams, parent_tiles), FIELD(DeltaParams, list_origin),
+            FIELD(DeltaParams, tile_px), FIELD(DeltaParams, parent_ratio), FIELD(DeltaParams, lights),
+            FIELD(DeltaParams, first_light), FIELD(DeltaParams, end_light), FIELD(DeltaParams, capacity),
+            FIELD(DeltaParams, first_row), FIELD(DeltaParams, jobs), FIELD(DeltaParams, root_counts),
+            FIELD(DeltaParams, adds), FIELD(DeltaParams, least_distance), FIELD(DeltaParams, pad0),
+            FIELD(DeltaParams, pad1)};
 }
 
 Offsets compose_fields() {
     return {FIELD(ComposeParams, origin),       FIELD(ComposeParams, extent),
             FIELD(ComposeParams, border),       FIELD(ComposeParams, antialias),
-            FIELD(ComposeParams, tonemap),      FIELD(ComposeParams, floor_albedo),
+            FIELD(ComposeParams, levels),      FIELD(ComposeParams, floor_albedo),
             FIELD(ComposeParams, exposure),     FIELD(ComposeParams, radiance_scale),
             FIELD(ComposeParams, white),        FIELD(ComposeParams, has_shapes),
-            FIELD(ComposeParams, first_row),    FIELD(ComposeParams, pad0),
-            FIELD(ComposeParams, pad1),         FIELD(ComposeParams, pad2)};
+            FIELD(ComposeParams, first_pixel),  FIELD(ComposeParams, first_lit)};
 }
 
 std::vector<Layout> layouts() {
@@ -116,14 +127,14 @@ std::vector<Layout> layouts() {
         {"resolve.comp", sizeof(glsl::ResolveParams),
          {FIELD(ResolveParams, origin), FIELD(ResolveParams, extent), FIELD(ResolveParams, probes),
           FIELD(ResolveParams, tiles), FIELD(ResolveParams, texel), FIELD(ResolveParams, first_probe),
-          FIELD(ResolveParams, spacing), FIELD(ResolveParams, aligned), FIELD(ResolveParams, pad1),
-          FIELD(ResolveParams, pad2)},
+          FIELD(ResolveParams, spacing), FIELD(ResolveParams, aligned), FIELD(ResolveParams, first_pixel)},
          glsl::kResolveGroupX, glsl::kResolveGroupY},
         {"reference.comp", sizeof(glsl::ReferenceParams),
          {FIELD(ReferenceParams, origin), FIELD(ReferenceParams, extent), FIELD(ReferenceParams, border),
           FIELD(ReferenceParams, shape_count), FIELD(ReferenceParams, ray_count), FIELD(ReferenceParams, first_ray),
           FIELD(ReferenceParams, end_ray), FIELD(ReferenceParams, sky_first), FIELD(ReferenceParams, is_last),
-          FIELD(ReferenceParams, domain), FIELD(ReferenceParams, sky)},
+          FIELD(ReferenceParams, domain), FIELD(ReferenceParams, sky), FIELD(ReferenceParams, first_pixel),
+          FIELD(ReferenceParams, pad0)},
          glsl::kReferenceGroupX, glsl::kReferenceGroupY},
         {"exact_lists.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
         {"exact_solve.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactSolveGroupX, glsl::kExactGroupY},
@@ -131,6 +142,10 @@ std::vector<Layout> layouts() {
         {"exact_jobs.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
         {"exact_mean.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
         {"exact_fill.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
+        {"exact_reflect.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
+        {"delta_lists.comp", sizeof(glsl::DeltaParams), delta_fields(), glsl::kDeltaGroupX, glsl::kDeltaGroupY},
+        {"delta.comp", sizeof(glsl::DeltaParams), delta_fields(), glsl::kDeltaGroupX, glsl::kDeltaGroupY},
+        {"delta_nodes.comp", sizeof(glsl::DeltaParams), delta_fields(), glsl::kDeltaGroupX, glsl::kDeltaGroupY},
         {"hrc_low.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
         {"hrc_low_half.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
         {"hrc_trace.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},

@@ -146,6 +146,7 @@ TEST(Failure, APictureTooLargeLeavesTheRendererWorking) {
     if (shared_renderer().device().kind != "cpu") return;  // the next size fits a GPU
     Scene huge = canvas(8192, 8192);
     huge.sky.radiance = Colour(1);
+    huge.shapes.push_back(shape(Circle{{50, 50}, 9}));
     huge.render.quality = Quality::high;
     huge.render.method = "rc";  // others fit
     EXPECT_THROW(shared_renderer().render(huge), DeviceError);
@@ -193,10 +194,13 @@ TEST(Statistics, SayWhatWasSkipped) {
     const RenderStats stats = shared_renderer().render(canvas(20, 10, "png")).stats;
     std::set<std::string> skipped;
     for (const SkippedWork& work : stats.skipped) skipped.insert(work.what);
-    EXPECT_EQ(skipped, (std::set<std::string>{"distance pass", "jump flooding", "points"}));
-    ASSERT_EQ(stats.passes.size(), 2u);
+    EXPECT_EQ(skipped, (std::set<std::string>{"all passes"}));
+    ASSERT_EQ(stats.passes.size(), 3u);
     EXPECT_EQ(stats.passes[0].name, "compose");
+    EXPECT_EQ(stats.passes[0].width, 1);
     EXPECT_EQ(stats.passes[1].name, "read");
+    EXPECT_EQ(stats.passes[2].name, "fill");
+    EXPECT_EQ(stats.passes[2].width, 20);
 }
 
 TEST(DeviceInfo, IsFilledIn) {

@@ -15,7 +15,7 @@ namespace {
 
 // Returns how many shapes a pixel asks.
 double expect_same_with_lists(const Scene& scene, const std::string& what, const PassSettings& settings = {}) {
-    Plan plan = make_plan(scene, {});
+    Plan plan = pass_plan(scene);
     EXPECT_TRUE(plan.list_shapes) << what;
     const Field listed = run_distance(scene, plan, settings);
     plan.list_shapes = false;
@@ -106,7 +106,7 @@ TEST(ShapeLists, NorInSlicesAndBands) {
         for (int k = 0; k < 2500; ++k) scribble.points.push_back({numbers.between(0, 43), numbers.between(0, 26)});
         scene.shapes.push_back(shape(scribble));
     }
-    const Plan plan = make_plan(scene, {});
+    const Plan plan = pass_plan(scene);
     EXPECT_GT(list_shapes(pack_scene(scene, 1), plan.grid).slices, 1);
     expect_same_with_lists(scene, "slices");
     expect_same_with_lists(any_scene(1, 150, 117, 100, 6), "bands", PassSettings{150 * 8, 0, 0, nullptr});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tests/gpu/shared_context.h"
 
+#include "core/plan/saving.h"
+
 #include <gtest/gtest.h>
 
 #include "core/plan/pack.h"
@@ -59,6 +61,11 @@ Field run_distance(const Scene& scene, const Plan& plan, const PassSettings& set
     return read_field(field);
 }
 
-Field run_distance(const Scene& scene) { return run_distance(scene, make_plan(scene, {})); }
+Plan pass_plan(Scene scene) {
+    scene.render.keep = static_cast<std::uint32_t>(Saving::constant);
+    return make_plan(scene, {});
+}
+
+Field run_distance(const Scene& scene) { return run_distance(scene, pass_plan(scene)); }
 
 }  // namespace penumbra::test

@@ -93,7 +93,7 @@ public:
         }
         RenderResult result;
         const int width = scene.canvas.width, height = scene.canvas.height;
-        if (scene.output.format == "pfm") {
+        if (scene.output.format != "png") {
             ImageF picture(width, height, 3);
             for (std::size_t i = 0; i < picture.data.size(); ++i) picture.data[i] = float(i % 7);
             result.picture = std::move(picture);
@@ -128,8 +128,9 @@ Engine fake_engine(std::shared_ptr<FakeControl> control) {
     engine.make_backend = [control](const RendererOptions&) -> std::unique_ptr<RenderBackend> {
         return std::make_unique<FakeBackend>(control);
     };
-    engine.unsupported = [](const Scene& scene) {
+    engine.unsupported = [](const Scene& scene, const Features&) {
         Problems problems;
+        // As if this build wrote no more than these two.
         if (scene.output.format != "png" && scene.output.format != "pfm") {
             problems.push_back({"/output/format", "not_supported_yet", "this format is not supported yet"});
         }

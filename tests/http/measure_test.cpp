@@ -82,13 +82,32 @@ TEST(ReferenceCommand, BadScenesAreExitCode2) {
 
 TEST(ReferenceCommand, JudgesTheFilesNameBeforeItWorks) {
     TemporaryFolder folder;
-    for (const char* name : {"out.png", "out", "out.pfm.exr"}) {
+    for (const char* name : {"out.png", "out", "out.pfm.hdr"}) {
         // The scene is not looked at: there is none.
         const Finished finished = penumbra({"reference", "/no/such.json", "-o", folder.path(name)});
         EXPECT_EQ(finished.exit_code, 2);
-        EXPECT_EQ(finished.err, "penumbra: --output takes a name that ends in .pfm, or -, not " + folder.path(name) + "\n");
+        EXPECT_EQ(finished.err, "penumbra: --output takes a name that ends in .pfm, .exr or .npy, or -, not " + folder.path(name) + "\n");
     }
     EXPECT_EQ(penumbra({"reference", "-", "-o", folder.path("out.PFM")}, kLamp).exit_code, 0);
+}
+
+// The same solution in every format that knows NaN, and compare reads them all.
+TEST(CompareCommand, ReadsEveryFormat) {
+    TemporaryFolder folder;
+    for (const char* name : {"out.pfm", "out.exr", "out.npy"}) {
+        ASSERT_EQ(penumbra({"reference", "-", "-o", folder.path(name)}, kLamp).exit_code, 0) << name;
+        EXPECT_EQ(penumbra({"compare", folder.path(name), folder.path("out.pfm"), "--max-abs", "0"}).exit_code, 0) << name;
+    }
+    ImageF image(20, 10, 3, 0.5f);
+    const std::string hdr = folder.write("a.hdr", text_of(encode_hdr(image)));
+    image.data[7] = 0.75f;
+    const std::string half = folder.write("a.exr", text_of(encode_exr(image, ExrSamples::half)));
+    EXPECT_EQ(penumbra({"compare", half, hdr, "--max-abs", "0.25"}).exit_code, 0);
+    EXPECT_EQ(penumbra({"compare", half, hdr, "--max-abs", "0.2499"}).exit_code, 1);
+    const std::string wide = folder.write("a.png", text_of(encode_png(Image16(20, 10, 3, 257 * 3 + 100))));
+    const std::string narrow = folder.write("b.png", text_of(encode_png(Image8(20, 10, 3, 3))));
+    EXPECT_THAT(penumbra({"compare", wide, narrow}).out, HasSubstr("largest      0.389105"));  // 100 / 257
+    EXPECT_EQ(penumbra({"compare", wide, hdr}).exit_code, 2);
 }
 
 TEST(CompareCommand, JudgesTheFilesNameBeforeItWorks) {

@@ -33,7 +33,8 @@ TEST(Real, CommandLineAndServiceGiveTheSameBytes) {
     httplib::Client client("127.0.0.1", port);
     client.set_read_timeout(60);
 
-    for (const auto& [format, type] : {std::pair{"png", "image/png"}, std::pair{"pfm", "image/x-pfm"}}) {
+    for (const auto& [format, type] : {std::pair{"png", "image/png"}, std::pair{"pfm", "image/x-pfm"}, std::pair{"exr", "image/x-exr"},
+                                       std::pair{"hdr", "image/vnd.radiance"}, std::pair{"npy", "application/x-npy"}}) {
         const auto served = client.Post("/v1/render", {{"Accept", type}}, kScene, "application/json");
         ASSERT_TRUE(served) << program.err();
         ASSERT_EQ(served->status, 200) << served->body;
@@ -48,7 +49,13 @@ TEST(Real, CommandLineAndServiceGiveTheSameBytes) {
             EXPECT_EQ(std::get<Texels>(picture).width, 70);
             EXPECT_EQ(std::get<Texels>(picture).height, 50);
         } else {
-            EXPECT_TRUE(std::holds_alternative<ImageF>(decode_pfm(bytes_of(served->body))));
+            const auto bytes = bytes_of(served->body);
+            const auto picture = std::string(format) == "exr"   ? decode_exr(bytes)
+                                 : std::string(format) == "hdr" ? decode_hdr(bytes)
+                                 : std::string(format) == "npy" ? decode_npy(bytes)
+                                                                : decode_pfm(bytes);
+            ASSERT_TRUE(std::holds_alternative<ImageF>(picture)) << format;
+            EXPECT_EQ(std::get<ImageF>(picture).width, 70) << format;
         }
     }
     const auto ready = client.Get("/readyz");

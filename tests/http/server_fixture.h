@@ -31,7 +31,7 @@ public:
         : control(std::move(the_control)), engine(fake_engine(control)), settings(local(std::move(config))) {
         worker = std::make_unique<RenderWorker>([this] { return engine.make_backend({}); },
                                                 settings.queue_capacity, log, warm_up_scenes(settings.warm_up));
-        service = std::make_unique<RenderService>(*worker, engine.unsupported, settings);
+        service = std::make_unique<RenderService>(*worker, engine.unsupported_with({}), settings);
         server = std::make_unique<HttpServer>(*service, settings, log);
         const std::string why = server->start();
         if (!why.empty()) ADD_FAILURE() << why;

@@ -213,7 +213,7 @@ TEST_P(ExactTruth, RandomScenesStayNear) {
 // From measurement on llvmpipe, half as much again.
 INSTANTIATE_TEST_SUITE_P(Qualities, ExactTruth,
                          testing::Values(Bounds{Quality::draft, 5e-3, 1, 1.5e-3, 1e-5, 1.4e-3}, Bounds{Quality::standard, 9e-4, 0.08, 2e-4, 1e-8, 1.8e-4},
-                                         Bounds{Quality::high, 1.1e-4, 0.02, 2e-5, 1e-8, 1.4e-5}));
+                                         Bounds{Quality::high, 1.1e-4, 0.008, 2e-5, 1e-8, 8e-6}));
 
 // ---- lists that are long ----
 

@@ -81,14 +81,21 @@ double distance(const Polyline& g, dvec2 p) { return to_outline(g.points, g.clos
 double distance(const Polygon& g, dvec2 p) {
     // Even-odd by the parity of crossings above the point.
     bool odd = false;
-    for (std::size_t i = 0; i < g.points.size(); ++i) {
-        const dvec2 a = g.points[i];
-        const dvec2 b = g.points[(i + 1) % g.points.size()];
-        if ((a.x <= p.x) == (b.x <= p.x)) continue;
-        const double y = a.y + (b.y - a.y) * (p.x - a.x) / (b.x - a.x);
-        if (y < p.y) odd = !odd;
+    double outline = 1e300;
+    std::size_t first = 0;
+    for (std::size_t ring = 0; ring <= g.ring_starts.size(); ++ring) {
+        const std::size_t end = ring < g.ring_starts.size() ? g.ring_starts[ring] : g.points.size();
+        const std::vector<Point> points(g.points.begin() + std::ptrdiff_t(first), g.points.begin() + std::ptrdiff_t(end));
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const dvec2 a = points[i];
+            const dvec2 b = points[(i + 1) % points.size()];
+            if ((a.x <= p.x) == (b.x <= p.x)) continue;
+            const double y = a.y + (b.y - a.y) * (p.x - a.x) / (b.x - a.x);
+            if (y < p.y) odd = !odd;
+        }
+        outline = std::min(outline, to_outline(points, true, p));
+        first = end;
     }
-    const double outline = to_outline(g.points, true, p);
     return odd ? -outline : outline;
 }
 
@@ -106,7 +113,8 @@ FieldValue exact_field(const std::vector<Shape>& shapes, Point p, double far) {
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const double d = exact_distance(shapes[i], p);
         if (d <= 0) topmost = static_cast<int>(i);
-        if (d < result.distance) result = {d, static_cast<int>(i)};
+        // The later of two whose outlines coincide lies on top.
+        if (d <= result.distance) result = {d, static_cast<int>(i)};
     }
     if (topmost >= 0) result.shape = topmost;
     return result;

@@ -22,7 +22,7 @@ public:
 const testing::Environment* const kDestroyRenderer = testing::AddGlobalTestEnvironment(new DestroyRenderer);
 
 void check(const Scene& scene) {
-    for (const Problems& problems : {validate(scene), unsupported(scene)})
+    for (const Problems& problems : {validate(scene), unsupported(scene, {.tone_lut = true})})
         for (const Problem& problem : problems)
             throw std::logic_error("the test's scene is wrong: " + problem.pointer + " " + problem.message);
 }
@@ -33,7 +33,17 @@ RendererOptions test_options() {
     RendererOptions options;
     if (const char* device = std::getenv("PENUMBRA_TEST_DEVICE")) options.device = device;
     if (const char* folder = std::getenv("PENUMBRA_TEST_SHADERS")) options.shader_dir = folder;
+    options.tone_lut = std::make_shared<const ToneLut>(table_of_places());
     return options;
+}
+
+ToneLut table_of_places() {
+    constexpr int kSide = 5;
+    ToneLut lut{kSide, {}};
+    for (int b = 0; b < kSide; ++b)
+        for (int g = 0; g < kSide; ++g)
+            for (int r = 0; r < kSide; ++r) lut.texels.push_back(glm::vec3(r, g, b) / float(kSide - 1));
+    return lut;
 }
 
 Renderer& shared_renderer() {
@@ -45,6 +55,13 @@ ImageF render_linear(Scene scene) {
     scene.output.format = "pfm";
     check(scene);
     return std::get<ImageF>(shared_renderer().render(scene).picture);
+}
+
+Image16 render_display16(Scene scene) {
+    scene.output.format = "png";
+    scene.output.bit_depth = 16;
+    check(scene);
+    return std::get<Image16>(shared_renderer().render(scene).picture);
 }
 
 Image8 render_display(Scene scene) {

@@ -6,16 +6,22 @@
 
 #include <string>
 
+#include "core/film/tone_lut.h"
 #include "core/renderer.h"
 
 namespace penumbra::test {
 
 RendererOptions test_options();
 
+// A table of 5 texels on a side that holds their own places, which makes "tony" another name for Reinhard's curve: what the shared
+// renderer has.
+ToneLut table_of_places();
+
 // Made at the first call, on the thread of that call; destroyed when all tests have run.
 Renderer& shared_renderer();
 
 ImageF render_linear(Scene scene);
 Image8 render_display(Scene scene);
+Image16 render_display16(Scene scene);
 
 }  // namespace penumbra::test

@@ -101,6 +101,21 @@ TEST(Outlines, PolygonWithAHole) {
     EXPECT_FALSE(reference::ExactSolver(scene).is_solid({50, 50}));
 }
 
+TEST(Outlines, PolygonOfSeveralRings) {
+    // The same without the seam, and a square apart.
+    const Polygon rings{{{20, 20}, {80, 20}, {80, 80}, {20, 80}, {40, 40}, {40, 60}, {60, 60}, {60, 40}, {85, 20}, {95, 20}, {95, 30}, {85, 30}}, {4, 8}};
+    Scene scene = empty_scene();
+    add(scene, rings, Colour(3));
+    EXPECT_NEAR(phi(scene, {50, 50}), 3, kExact);
+    EXPECT_NEAR(phi(scene, {50, 95}), phi(scene, {50, 95.000001}), 1e-6);
+    EXPECT_NEAR(phi(scene, {5, 50}), 3 * 2 * std::atan(30.0 / 15) / (2 * kPi), kExact);
+    const reference::ExactSolver solver(scene);
+    EXPECT_TRUE(solver.is_solid({30, 50}));
+    EXPECT_FALSE(solver.is_solid({50, 50}));
+    EXPECT_TRUE(solver.is_solid({90, 25}));
+    EXPECT_FALSE(solver.is_solid({82, 25}));
+}
+
 TEST(Outlines, PolygonThatCrossesItself) {
     Polygon star;
     for (int i = 0; i < 5; ++i) {

@@ -106,15 +106,15 @@ struct Ray {
         // All crossings of the whole line, in order: inside between the first and second, and so
         // on.
         std::vector<std::pair<double, Point>> crossings;
-        for (std::size_t i = 0; i < g.points.size(); ++i) {
-            const Point a = g.points[i] - p, b = g.points[(i + 1) % g.points.size()] - p;
+        for_each_edge(g, [&](Point from, Point to) {
+            const Point a = from - p, b = to - p;
             const double side_a = d.x * a.y - d.y * a.x, side_b = d.x * b.y - d.y * b.x;
-            if ((side_a > 0) == (side_b > 0)) continue;
+            if ((side_a > 0) == (side_b > 0)) return;
             const double f = side_a / (side_a - side_b);
             Point normal(b.y - a.y, a.x - b.x);
             if (dot_of(normal, d) > 0) normal = -normal;
             crossings.emplace_back(dot_of(a + (b - a) * f, d), normal);
-        }
+        });
         std::sort(crossings.begin(), crossings.end(),
                   [](const auto& x, const auto& y) { return x.first < y.first; });
         for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {

@@ -208,6 +208,26 @@ TEST(PackOutline, KnowsTheSmallestLightInPixels) {
     EXPECT_NEAR(packed(scene).smallest_light, 0.25, 1e-9);
 }
 
+TEST(PackOutline, ABodyIsMeasuredWholeThoughLittleOfItIsSeen) {
+    // A disc whose rim only just shows beside the rect on top.
+    const Scene scene = with(canvas(100, 80), {shape(Circle{{42, 40}, 12}), shape(Rect{{40, 40}, {27.8, 40}, 0, 0}, Colour(1))});
+    EXPECT_NEAR(packed(scene).smallest_body, 24, 1e-6);
+}
+
+TEST(SkyNodes, NumberThePartsBetweenSteps) {
+    Sky sky;
+    sky.gradient = {{20, Colour(1)}, {100, Colour(1)}, {100, Colour(3)}, {200, Colour(3)}, {200, Colour(1)}};
+    const auto part = [&](double degrees) { return sky_nodes(sky, 360, 1.0)[2 * static_cast<std::size_t>(degrees) + 1].a; };
+    EXPECT_EQ(part(50), part(250)) << "across angle 0";
+    EXPECT_NE(part(150), part(50));
+    EXPECT_EQ(part(101), part(199));
+    // One step alone has a border at angle 0 as well.
+    sky.gradient = {{100, Colour(1)}, {100, Colour(3)}};
+    EXPECT_NE(part(150), part(50));
+    sky.gradient = {{20, Colour(1)}, {100, Colour(3)}};
+    EXPECT_EQ(part(150), part(50)) << "no step, one part";
+}
+
 TEST(PackOutline, KnowsTheSmallestBodyInPixels) {
     Scene scene = with(canvas(100, 80), {shape(Circle{{30, 30}, 8}, Colour(1)), shape(Rect{{60, 30}, {3, 5}, 0, 0})});
     EXPECT_NEAR(packed(scene).smallest_body, 5, 1e-9);

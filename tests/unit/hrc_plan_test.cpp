@@ -151,6 +151,9 @@ Scene hrc_scene(int width, int height, Quality quality) {
     scene.canvas.width = width;
     scene.canvas.height = height;
     scene.sky.radiance = Colour(3);
+    Shape shape;
+    shape.geometry = Circle{{5, 5}, 2};
+    scene.shapes.push_back(shape);
     scene.render.method = "hrc";
     scene.render.quality = quality;
     return scene;
@@ -171,7 +174,7 @@ TEST(MakePlan, HrcIsLeftOutWhereNothingEmits) {
     scene.sky.radiance = Colour(0);
     const Plan plan = make_plan(scene, {});
     EXPECT_FALSE(plan.hrc.active());
-    EXPECT_TRUE(std::any_of(plan.skipped.begin(), plan.skipped.end(), [](const SkippedWork& s) { return s.what == "ray pieces"; }));
+    EXPECT_TRUE(std::any_of(plan.skipped.begin(), plan.skipped.end(), [](const SkippedWork& s) { return s.what == "all passes"; }));
 }
 
 TEST(MakePlan, HrcTakesHalfFloatsWhenLargeAndIsRefusedWhenTooLarge) {

@@ -74,6 +74,10 @@ TEST(NormalForm, EveryValueShows) {
     differs("/render/method", "rc");
     differs("/render/quality", "high");
     differs("/render/bounces", "1");
+    differs("/render/bounces", "\"converged\"");
+    differs("/render/tolerance", "0.01");
+    differs("/canvas/region", "[1, 2, 8, 8]");
+    differs("/lights/0/radius", "3");
     differs("/render/skip", "none");
     differs("/output/format", "pfm");
     differs("/output/antialias", "false");

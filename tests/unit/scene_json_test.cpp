@@ -55,7 +55,12 @@ TEST(SceneJson, DefaultsAreThoseOfTheFormat) {
     EXPECT_EQ(scene.render.skip, Skip::all);
     EXPECT_EQ(scene.render.view, "final");
     EXPECT_EQ(scene.output.format, "png");
-    EXPECT_EQ(scene.output.bit_depth, 8);
+    EXPECT_FALSE(scene.output.bit_depth);
+    EXPECT_FALSE(scene.output.camera);
+    EXPECT_FALSE(scene.output.auto_key);
+    EXPECT_FALSE(scene.output.look);
+    EXPECT_FALSE(scene.output.white);
+    EXPECT_EQ(scene.output.dither, Dither::none);
     EXPECT_TRUE(scene.output.antialias);
     EXPECT_EQ(scene.output.solids, Solids::emission);
     EXPECT_EQ(scene.output.exposure_ev, 0);
@@ -68,7 +73,7 @@ TEST(SceneJson, EverySetting) {
                    "floor": {"albedo": [0.1, 0.2, 0.3]}},
         "sky": {"gradient": [{"angle": 10, "radiance": 1}, {"angle": 20.5, "radiance": [1, 2, 3]}]},
         "render": {"method": "rc", "quality": "high", "bounces": 7, "skip": "none", "view": "cascade2"},
-        "output": {"format": "pfm", "bit_depth": 16, "antialias": false, "solids": "lit",
+        "output": {"format": "exr", "bit_depth": 16, "look": "punchy", "dither": "triangular", "antialias": false, "solids": "lit",
                    "exposure": -1.5, "tonemap": "agx"}})");
     EXPECT_EQ(scene.canvas.view->x, -1);
     EXPECT_EQ(scene.canvas.view->y, -2);
@@ -85,12 +90,83 @@ TEST(SceneJson, EverySetting) {
     EXPECT_EQ(scene.render.bounces, 7);
     EXPECT_EQ(scene.render.skip, Skip::none);
     EXPECT_EQ(scene.render.view, "cascade2");
-    EXPECT_EQ(scene.output.format, "pfm");
+    EXPECT_EQ(scene.output.format, "exr");
+    EXPECT_EQ(scene.output.look, "punchy");
+    EXPECT_EQ(scene.output.dither, Dither::triangular);
     EXPECT_EQ(scene.output.bit_depth, 16);
     EXPECT_FALSE(scene.output.antialias);
     EXPECT_EQ(scene.output.solids, Solids::lit);
     EXPECT_EQ(scene.output.exposure_ev, -1.5);
     EXPECT_EQ(scene.output.tonemap, "agx");
+}
+
+TEST(SceneJson, ASkysPictureIsAGradient) {
+    Image8 image(4, 3, 3);
+    for (int x = 0; x < 4; ++x) image.at(x, 1)[0] = std::uint8_t(60 * x);
+    image.at(2, 2)[1] = 255;
+    const auto sky = [&](const std::string& rest) { return good(document(R"(, "sky": {"image": ")" + data_url(encode_png(image)) + "\"" + rest + "}")).sky; };
+    const Sky middle = sky(R"(, "scale": 2)");
+    ASSERT_EQ(middle.gradient.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(middle.gradient[i].angle_deg, 45 + 90.0 * double(i));
+        const double s = 60.0 * double(i) / 255;
+        EXPECT_NEAR(middle.gradient[i].radiance.r, 2 * (s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4)), 1e-12);
+        EXPECT_EQ(middle.gradient[i].radiance.g, 0);
+    }
+    EXPECT_EQ(sky(R"(, "row": 2)").gradient[2].radiance, Colour(0, 1, 0));
+}
+
+TEST(SceneJson, AWideSkyKeepsItsMean) {
+    Image8 image(1000, 1, 3);
+    double sum = 0;
+    for (int x = 0; x < 1000; ++x) {
+        const int code = (x * 37) % 256;
+        image.at(x, 0)[1] = std::uint8_t(code);
+        const double s = code / 255.0;
+        sum += s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+    }
+    const Sky sky = good(document(R"(, "sky": {"image": ")" + data_url(encode_png(image)) + "\"}")).sky;
+    ASSERT_EQ(sky.gradient.size(), 256u);
+    double mean = 0;
+    for (const SkyStop& stop : sky.gradient) mean += stop.radiance.g / 256;
+    EXPECT_NEAR(mean, sum / 1000, 1e-12);
+}
+
+TEST(SceneJson, ExposureHasFourForms) {
+    const auto output = [](const std::string& exposure) { return good(document(R"(, "output": {"exposure": )" + exposure + "}")).output; };
+    EXPECT_EQ(output("2.5").exposure_ev, 2.5);
+    EXPECT_EQ(output(R"("auto")").auto_key, kDefaultKey);
+    EXPECT_EQ(output(R"({"key": 0.4})").auto_key, 0.4);
+    const OutputSettings camera = output(R"({"aperture": 2.8, "shutter": 0.01, "iso": 400, "compensation": -1})");
+    ASSERT_TRUE(camera.camera);
+    EXPECT_EQ(camera.camera->aperture, 2.8);
+    EXPECT_EQ(camera.camera->shutter_s, 0.01);
+    EXPECT_EQ(camera.camera->iso, 400);
+    EXPECT_EQ(camera.exposure_ev, -1);
+    EXPECT_FALSE(camera.auto_key);
+    EXPECT_EQ(output(R"({"aperture": 2.8, "shutter": 0.01})").camera->iso, 100);
+    EXPECT_EQ(good(document(R"(, "output": {"tonemap": "reinhard_extended", "white": 9})")).output.white, 9);
+}
+
+TEST(SceneJson, ExposuresThatAreNone) {
+    const auto problems = [](const std::string& output) { return brief(parse_scene(document(R"(, "output": )" + output))); };
+    using testing::ElementsAre;
+    EXPECT_THAT(problems(R"({"exposure": "automatic"})"), ElementsAre("/output/exposure unknown_value"));
+    EXPECT_THAT(problems(R"({"exposure": [1]})"), ElementsAre("/output/exposure wrong_type"));
+    EXPECT_THAT(problems(R"({"exposure": {"aperture": 2}})"), ElementsAre("/output/exposure/shutter missing_key"));
+    EXPECT_THAT(problems(R"({"exposure": {"aperture": 0, "shutter": 1}})"), ElementsAre("/output/exposure/aperture out_of_range"));
+    EXPECT_THAT(problems(R"({"exposure": {"aperture": 1, "shutter": 1, "iso": 1e8}})"), ElementsAre("/output/exposure/iso out_of_range"));
+    EXPECT_THAT(problems(R"({"exposure": {"aperture": 1, "shutter": 1, "compensation": 17}})"), ElementsAre("/output/exposure/compensation out_of_range"));
+    EXPECT_THAT(problems(R"({"exposure": {"key": 0}})"), ElementsAre("/output/exposure/key out_of_range"));
+    EXPECT_THAT(problems(R"({"exposure": {"key": 0.2, "iso": 100}})"), ElementsAre("/output/exposure/iso unknown_key"));
+    EXPECT_THAT(problems(R"({"look": "golden"})"), ElementsAre("/output/look conflict"));
+    EXPECT_THAT(problems(R"({"look": "sepia", "tonemap": "agx"})"), ElementsAre("/output/look unknown_value"));
+    EXPECT_THAT(problems(R"({"white": 2, "tonemap": "aces"})"), ElementsAre("/output/white conflict"));
+    EXPECT_THAT(problems(R"({"white": 0, "tonemap": "reinhard_extended"})"), ElementsAre("/output/white out_of_range"));
+    EXPECT_THAT(problems(R"({"dither": "blue"})"), ElementsAre("/output/dither unknown_value"));
+    EXPECT_THAT(problems(R"({"format": "npy", "bit_depth": 32})"), ElementsAre("/output/bit_depth conflict"));
+    EXPECT_THAT(problems(R"({"format": "exr", "bit_depth": 8})"), ElementsAre("/output/bit_depth unknown_value"));
+    EXPECT_THAT(problems(R"({"format": "png", "bit_depth": 32})"), ElementsAre("/output/bit_depth unknown_value"));
 }
 
 TEST(SceneJson, EveryShape) {
@@ -347,13 +423,18 @@ TEST(SceneJson, EveryKeyWithEveryWrongKind) {
         {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "render": {"quality": )", "}}",
          "s"},
         {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "render": {"bounces": )", "}}",
+         "ns"},
+        {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "render": {"tolerance": )", "}}",
          "n"},
         {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "render": {"skip": )", "}}", "s"},
         {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "render": {"view": )", "}}", "s"},
         {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "output": {"antialias": )", "}}",
          "b"},
         {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "output": {"exposure": )", "}}",
-         "n"},
+         "nso"},
+        {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "output": {"white": )", "}}", "n"},
+        {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "output": {"look": )", "}}", "s"},
+        {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "output": {"dither": )", "}}", "s"},
         {R"({"version": 1, "canvas": {"width": 4, "height": 4}, "output": {"tonemap": )", "}}",
          "s"},
         {circle, "}]}", "n"},

@@ -16,12 +16,19 @@ except ImportError:
     sys.exit(77)
 
 # Rules across values, of the text itself, and of what a PNG holds.
-BEYOND_A_SCHEMA = {"not_square", "not_in_order", "zero_area", "bad_image", "duplicate_key", "syntax", "too_many", "too_large"}
+BEYOND_A_SCHEMA = {"not_square", "not_in_order", "zero_area", "bad_image", "duplicate_key", "syntax", "too_many", "too_large", "bad_path", "missing_glyph"}
 # Files whose code a schema sees elsewhere, with what it does not see here.
 BEYOND_BY_NAME = {
     "rect_corner_too_large": "half the shorter side",
     "spot_inner_over_outer": "one angle against the other",
     "emission_too_bright": "a colour times a factor",
+    "sky_row_too_large": "the picture knows its rows",
+    "bit_depth_of_pfm": "one key against another",
+    "bit_depth_32_of_png": "one key against another",
+    "look_without_agx": "one key against another",
+    "white_without_its_curve": "one key against another",
+    "region_outside": "a pixel against the canvas",
+    "region_too_wide": "a part against the canvas",
 }
 
 

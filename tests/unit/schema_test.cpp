@@ -55,6 +55,9 @@ std::vector<Object> objects() {
          document(R"(, "sky": {"gradient": [{}]})"), "/sky/gradient/0"},
         {"/properties/render", kRenderKeys, document(R"(, "render": {})"), "/render"},
         {"/properties/output", kOutputKeys, document(R"(, "output": {})"), "/output"},
+        {"/properties/output/properties/exposure/anyOf/2", kCameraKeys,
+         document(R"(, "output": {"exposure": {}})"), "/output/exposure"},
+        {"/properties/output/properties/exposure/anyOf/3", kAutoExposureKeys, "", ""},
         {"/$defs/radiance/anyOf/3", kColourKeys, document(R"(, "sky": {"radiance": {}})"),
          "/sky/radiance"},
         {"/$defs/reflectance/anyOf/3", kColourKeys,
@@ -64,7 +67,7 @@ std::vector<Object> objects() {
     const std::pair<std::string, std::span<const std::string_view>> shapes[] = {
         {"circle", kCircleKeys}, {"ellipse", kEllipseKeys},   {"rect", kRectKeys},
         {"line", kLineKeys},     {"polyline", kPolylineKeys}, {"polygon", kPolygonKeys},
-        {"bitmap", kBitmapKeys}};
+        {"bitmap", kBitmapKeys}, {"path", kPathKeys},         {"text", kTextKeys}};
     for (const auto& [type, keys] : shapes) {
         list.push_back(
             {"/$defs/" + type, keys, with_shape(R"({"type": ")" + type + "\"}"), "/shapes/0"});
@@ -115,6 +118,11 @@ TEST(Schema, TheSameKeysAreRequired) {
             object.schema.find("$defs") != std::string::npos && object.keys[0] == "type"
                 ? Words{"type"}
                 : Words{};
+        if (object.bare.empty()) {
+            // Told from a camera's by its one key, which no bare object can lack.
+            EXPECT_EQ(object.keys.size(), 1u) << object.schema;
+            required.insert(std::string(object.keys[0]));
+        }
         for (const LocatedProblem& problem : parse_scene(object.bare).problems) {
             const std::string& pointer = problem.problem.pointer;
             const std::string start = object.pointer + "/";
@@ -135,7 +143,11 @@ TEST(Schema, ValuesHaveTheParsersWords) {
         {"/properties/output/properties/format", words_of(known_formats())},
         {"/properties/output/properties/solids", words_of(kSolids)},
         {"/properties/output/properties/tonemap", words_of(known_tonemaps())},
+        {"/properties/output/properties/look", words_of(known_looks())},
+        {"/properties/output/properties/dither", words_of(kDithers)},
         {"/$defs/bitmap/properties/as", words_of(kUses)},
+        {"/$defs/path/properties/fill_rule", words_of(kFillRules)},
+        {"/$defs/text/properties/anchor", words_of(kAnchors)},
     };
     Words known{"/properties/output/properties/bit_depth"};  // numbers
     for (const auto& [pointer, expected] : words) {
@@ -148,7 +160,8 @@ TEST(Schema, ValuesHaveTheParsersWords) {
 
     const auto types_of = [](const char* list) {
         Words types;
-        for (const json& entry : at(list).at("oneOf")) {
+        const json shapes_or_lights = at(list).at("oneOf");
+        for (const json& entry : shapes_or_lights) {
             types.insert(at(entry.at("$ref").get<std::string>().substr(1))
                              .at("properties")
                              .at("type")
@@ -169,8 +182,19 @@ TEST(Schema, ListsHaveTheParsersLimits) {
     EXPECT_EQ(at("/$defs/polyline/properties/points/maxItems"), limits.max_points_per_shape);
     EXPECT_EQ(at("/properties/canvas/properties/width/maximum"), limits.max_canvas_side_px);
     EXPECT_EQ(at("/properties/canvas/properties/height/maximum"), limits.max_canvas_side_px);
-    EXPECT_EQ(at("/properties/render/properties/bounces/maximum"), limits.max_bounces);
-    EXPECT_EQ(at("/properties/output/properties/exposure/maximum"), limits.max_exposure_ev);
+    EXPECT_EQ(at("/properties/render/properties/bounces/anyOf/0/maximum"), limits.max_bounces);
+    EXPECT_EQ(at("/properties/output/properties/exposure/anyOf/0/maximum"), limits.max_exposure_ev);
+    const auto range = [&](const std::string& pointer, double low, double high) {
+        EXPECT_EQ(at(pointer + "/minimum"), low) << pointer;
+        EXPECT_EQ(at(pointer + "/maximum"), high) << pointer;
+    };
+    const std::string exposure = "/properties/output/properties/exposure/anyOf/";
+    range(exposure + "2/properties/aperture", limits.min_aperture, limits.max_aperture);
+    range(exposure + "2/properties/shutter", limits.min_shutter_s, limits.max_shutter_s);
+    range(exposure + "2/properties/iso", limits.min_iso, limits.max_iso);
+    range(exposure + "2/properties/compensation", -limits.max_compensation_ev, limits.max_compensation_ev);
+    range(exposure + "3/properties/key", limits.min_key, limits.max_key);
+    range("/properties/output/properties/white", limits.min_white, limits.max_white);
     EXPECT_EQ(at("/$defs/radiance/anyOf/0/maximum"), limits.max_radiance);
 }
 

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// Outlines as closed rings of points, and what is filled of them.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace penumbra {
+
+using Ring = std::vector<Point>;
+
+// Rings that fill by the even-odd rule what the given ones fill by the nonzero rule: split where they cross, of which the pieces
+// between filled and empty are kept. Points move by at most one part in 2^26 of the extent. Empty optional when they cross
+// more than `most_points` times, or are too intricate to be solved in a second or two.
+std::optional<std::vector<Ring>> even_odd_of_nonzero(const std::vector<Ring>& rings, std::size_t most_points);
+
+// Rings of fewer than three distinct points hold nothing and are left out.
+Polygon polygon_of(const std::vector<Ring>& rings);
+
+}  // namespace penumbra
