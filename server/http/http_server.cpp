@@ -3,8 +3,6 @@
 // expressions, so that a path and a method are refused before a body is read.
 #include "server/http/http_server.h"
 
-#include <netdb.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -12,7 +10,6 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -89,16 +86,6 @@ ProblemKind kind_of(Fault fault) {
         case Fault::none: break;
     }
     return ProblemKind::bad_request;
-}
-
-// The library only says that it could not: the system's reason, as far as it is known.
-std::string why_not_bound(const std::string& host, int error) {
-    addrinfo* list = nullptr;
-    if (const int unknown = ::getaddrinfo(host.c_str(), nullptr, nullptr, &list); unknown != 0) {
-        return ::gai_strerror(unknown);
-    }
-    ::freeaddrinfo(list);
-    return error != 0 ? std::strerror(error) : "the address is not of this machine, or the port is taken or not allowed";
 }
 
 }  // namespace

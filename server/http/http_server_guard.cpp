@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include <arpa/inet.h>
+#include <netdb.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -60,6 +61,15 @@ void address_of(int socket, bool peer, std::string& ip, int& port) {
 }
 
 }  // namespace
+
+std::string why_not_bound(const std::string& host, int error) {
+    addrinfo* list = nullptr;
+    if (const int unknown = ::getaddrinfo(host.c_str(), nullptr, nullptr, &list); unknown != 0) {
+        return ::gai_strerror(unknown);
+    }
+    ::freeaddrinfo(list);
+    return error != 0 ? std::strerror(error) : "the address is not of this machine, or the port is taken or not allowed";
+}
 
 // ---- GuardedStream
 

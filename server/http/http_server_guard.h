@@ -46,6 +46,9 @@ struct Exchange {
     std::function<bool()> client_gone;
 };
 
+// The library only says that it could not bind: the system's reason, as far as it is known.
+std::string why_not_bound(const std::string& host, int error);
+
 // A socket as cpp-httplib wants it, with the limits. One per connection.
 class GuardedStream final : public httplib::Stream {
 public:
