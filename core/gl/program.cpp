@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/device_error.h"
+#include "core/gl/checkpoint.h"
 #include "core/gl/shader_source.h"
 
 namespace penumbra::gl {
@@ -84,6 +85,7 @@ constexpr GLbitfield kPassBarrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXT
                                     GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT;
 
 void ComputeProgram::run(const void* params, std::size_t bytes, glm::ivec2 extent) {
+    checkpoint();
     params_.write(params, bytes);
     params_.bind(0);
     glUseProgram(id_);
@@ -93,6 +95,7 @@ void ComputeProgram::run(const void* params, std::size_t bytes, glm::ivec2 exten
 }
 
 void ComputeProgram::run_indirect(const void* params, std::size_t bytes, std::size_t offset) {
+    checkpoint();
     params_.write(params, bytes);
     params_.bind(0);
     glUseProgram(id_);
