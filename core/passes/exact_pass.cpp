@@ -333,8 +333,7 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass
     settings.give(std::move(band.lights));
 }
 
-void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings,
-                    DeltaPass& delta, const Record& record, gl::Texture2D& out) {
+ExactPass::Band ExactPass::prepare(const Plan& plan, const Sky& sky) const {
     const ExactPlan& exact = plan.exact;
     const PackedOutline& outline = exact.outline;
     Band band;
@@ -345,7 +344,6 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         exact.sky_nodes > 0 ? sky_nodes(sky, exact.sky_nodes, plan.radiance_scale) : std::vector<glm::vec4>();
     band.sky = gl::BufferTexture(GL_RGBA32F, nodes.data(), nodes.size() * 16);
 
-    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.lit.size);
     glsl::ExactParams& params = band.params;
     params.canvas = plan.canvas;
     params.border = plan.grid.border;
@@ -361,7 +359,23 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
     params.floor_share = 0.05f;
     params.root_counts = {outline.counts[0], outline.counts[1], outline.counts[2], outline.counts[3]};
     params.root_lights = {outline.lights[0], outline.lights[1], outline.lights[2], outline.lights[3]};
+    return band;
+}
 
+std::vector<glm::vec4> ExactPass::surfaces(const Plan& plan, const Sky& sky, const PassSettings& settings, DeltaPass& delta, const Record& record) {
+    Band band = prepare(plan, sky);
+    bounce(plan, settings, delta, record, band);
+    std::vector<glm::vec4> elements(plan.exact.outline.surfaces.elements * glsl::kExactElementTexels);
+    elements_.read(0, elements.data(), elements.size() * sizeof(glm::vec4));
+    return elements;
+}
+
+void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings,
+                    DeltaPass& delta, const Record& record, gl::Texture2D& out) {
+    const ExactPlan& exact = plan.exact;
+    Band band = prepare(plan, sky);
+    glsl::ExactParams& params = band.params;
+    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.lit.size);
     if (exact.bounces > 0) bounce(plan, settings, delta, record, band);
     for (int row = 0; row < plan.canvas.y; row += exact.band_rows) {
         band.area = {plan.canvas.x, std::min(exact.band_rows, plan.canvas.y - row)};

@@ -38,10 +38,14 @@ public:
     void run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings, DeltaPass& delta,
              const Record& record, gl::Texture2D& out);
 
+    // What surfaces shine with after all bounces: by element, as glsl/exact.h lays them out. For methods that sample.
+    std::vector<glm::vec4> surfaces(const Plan& plan, const Sky& sky, const PassSettings& settings, DeltaPass& delta, const Record& record);
+
     std::size_t bytes() const;
 
 private:
     struct Band;
+    Band prepare(const Plan& plan, const Sky& sky) const;
     PassWork make_lists(const Plan& plan, Band& band);
     PassWork solve(const Plan& plan, const DistanceField& field, Band& band, int level);
     // Lets the light bounce between surfaces: afterwards `elements_` tells what each shines with.
