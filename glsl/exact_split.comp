@@ -11,7 +11,7 @@ layout(binding = kExactValueImage, rgba32f) readonly uniform image2D value_image
 layout(binding = kExactSlopeXImage, rgba32f) readonly uniform image2D slope_x_image;
 layout(binding = kExactSlopeYImage, rgba32f) readonly uniform image2D slope_y_image;
 layout(binding = kExactLeafImage, r32ui) uniform uimage2D leaf_image;
-layout(std430, binding = kExactAsksStorage) buffer Asks { uint asks[]; };
+layout(std430, binding = kExactAsksStorage) buffer AskedBits { uint asks[]; };
 layout(binding = kExactSkyUnit) uniform samplerBuffer mean_light;
 layout(binding = kExactHeadsUnit) uniform usamplerBuffer heads;
 
