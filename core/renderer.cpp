@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "core/film/exposure.h"
+#include "core/gl/checkpoint.h"
 #include "core/gl/context.h"
 #include "core/gl/loop_limit.h"
 #include "core/gl/storage_buffer.h"
@@ -410,12 +411,15 @@ Renderer::~Renderer() {
 
 const DeviceInfo& Renderer::device() const { return impl_->info; }
 
-RenderResult Renderer::render(const Scene& given) {
+RenderResult Renderer::render(const Scene& given, const StopCheck& stop) {
     Scene made;
     if (needs_lowering(given)) made = lowered(given);
     const Scene& scene = needs_lowering(given) ? made : given;
     impl_->check_thread();
     impl_->context.make_current();
+    const gl::CheckpointScope stopping([&] {
+        if (stop && stop()) throw RenderStopped();
+    });
     try {
         return impl_->render(scene);
     } catch (const TooDense& problem) {
