@@ -9,6 +9,8 @@
 #include "core/scene/wording.h"
 #include "server/json/sky_picture.h"
 #include "server/json/bitmap_reader.h"
+#include "server/json/light_reader.h"
+#include "server/json/material_reader.h"
 #include "server/json/outline_reader.h"
 #include "server/json/scene_keys.h"
 #include "server/json/value_reader.h"
@@ -84,35 +86,7 @@ private:
         if (const NodeId floor_id = members.find("floor"); is_object(floor, floor_id)) {
             const Members floor_members(reader_, floor, floor_id, kFloorKeys, "a floor");
             floor_members.colour("albedo", canvas.floor_albedo);
-            read_floor_material(floor, floor_members, canvas.floor);
-        }
-    }
-
-    void read_floor_material(const Path& where, const Members& members, FloorMaterial& floor) {
-        if (const NodeId image = members.find("image"); image != kNoNode) {
-            floor.image = bitmaps_.read(where.key("image"), image);
-        }
-        if (const NodeId normals = members.find("normal_map"); normals != kNoNode) {
-            floor.normals = bitmaps_.read(where.key("normal_map"), normals);
-        }
-        if (const NodeId tile = members.find("tile"); tile != kNoNode) {
-            const auto t = reader_.numbers(where.key("tile"), tile, 4,
-                                           "a rectangle of four numbers [x, y, width, height]");
-            floor.tile = ViewRect{t[0], t[1], t[2], t[3]};
-            if (members.find("image") == kNoNode && members.find("normal_map") == kNoNode) {
-                refuse(members, where, "tile", "is for a floor with an image or a normal_map");
-            }
-        }
-        for (const auto& [key, member] : {std::pair{"roughness", &Gloss::roughness},
-                                          std::pair{"metallic", &Gloss::metallic},
-                                          std::pair{"reflectance", &Gloss::reflectance}}) {
-            if (members.find(key) == kNoNode) {
-                continue;
-            }
-            if (!floor.gloss) {
-                floor.gloss = Gloss{};
-            }
-            members.number(key, (*floor.gloss).*member);
+            read_floor_material(reader_, bitmaps_, floor, floor_members, canvas.floor);
         }
     }
 
@@ -261,59 +235,12 @@ private:
         return shape;
     }
 
-    void read_material(const Path& where, const Members& members, Shape& shape) {
-        const NodeId emission = members.find("emission");
-        const NodeId gradient = emission != kNoNode && reader_.node(emission).kind == NodeKind::object
-                                    ? reader_.tree().child(emission, "gradient")
-                                    : kNoNode;
-        if (gradient == kNoNode) {
-            members.colour("emission", shape.emission);
-        } else {
-            reader_.report(where.key("emission").key("gradient"), gradient, "conflict",
-                           [] { return "is for lines and polylines"; });
-        }
-        members.colour("albedo", shape.albedo);
-    }
-
-    // As read_material, but emission may be a gradient along the stroke.
-    void read_stroke_material(const Path& where, const Members& members, Shape& shape) {
-        const NodeId id = members.find("emission");
-        if (id == kNoNode || reader_.node(id).kind != NodeKind::object ||
-            reader_.tree().child(id, "gradient") == kNoNode) {
-            read_material(where, members, shape);
-            return;
-        }
-        members.colour("albedo", shape.albedo);
-        const Path emission = where.key("emission");
-        const Members gradient(reader_, emission, id, kGradientKeys, "a gradient");
-        const NodeId list = gradient.find("gradient");
-        const Path stops = emission.key("gradient");
-        if (!reader_.expect(stops, list, NodeKind::array, "a list of stops")) {
-            return;
-        }
-        if (reader_.node(list).child_count == 0) {
-            reader_.report(stops, list, "too_few",
-                           [] { return "must hold at least 1 stop, holds 0"; });
-        }
-        for (NodeId stop = reader_.node(list).first_child; stop != kNoNode;
-             stop = reader_.node(stop).next_sibling) {
-            const Path here = stops.index(shape.gradient.size());
-            EmissionStop read{kUnread, Colour(kUnread)};
-            if (is_object(here, stop)) {
-                const Members keys(reader_, here, stop, kEmissionStopKeys, "a stop of a gradient");
-                keys.need_number("at", read.at);
-                keys.need_colour("emission", read.emission);
-            }
-            shape.gradient.push_back(read);
-        }
-    }
-
     Circle read_circle(const Path& where, NodeId id, Shape& shape) {
         const Members members(reader_, where, id, kCircleKeys, "a circle");
         Circle circle;
         members.need_pair("center", "a point [x, y]", circle.center);
         members.need_number("radius", circle.radius);
-        read_material(where, members, shape);
+        read_material(reader_, where, members, shape);
         return circle;
     }
 
@@ -323,7 +250,7 @@ private:
         members.need_pair("center", "a point [x, y]", ellipse.center);
         members.need_pair("radii", "two radii [x, y]", ellipse.radii);
         members.number("rotation", ellipse.rotation_deg);
-        read_material(where, members, shape);
+        read_material(reader_, where, members, shape);
         return ellipse;
     }
 
@@ -334,7 +261,7 @@ private:
         members.need_pair("size", "a size [width, height]", rect.size);
         members.number("rotation", rect.rotation_deg);
         members.number("corner_radius", rect.corner_radius);
-        read_material(where, members, shape);
+        read_material(reader_, where, members, shape);
         return rect;
     }
 
@@ -344,7 +271,7 @@ private:
         members.need_pair("from", "a point [x, y]", line.from);
         members.need_pair("to", "a point [x, y]", line.to);
         members.number("width", line.width);
-        read_stroke_material(where, members, shape);
+        read_stroke_material(reader_, where, members, shape);
         return line;
     }
 
@@ -354,7 +281,7 @@ private:
         members.need_points("points", polyline.points);
         members.number("width", polyline.width);
         members.boolean("closed", polyline.closed);
-        read_stroke_material(where, members, shape);
+        read_stroke_material(reader_, where, members, shape);
         return polyline;
     }
 
@@ -362,7 +289,7 @@ private:
         const Members members(reader_, where, id, kPolygonKeys, "a polygon");
         Polygon polygon;
         members.need_points("points", polygon.points);
-        read_material(where, members, shape);
+        read_material(reader_, where, members, shape);
         return polygon;
     }
 
@@ -393,77 +320,7 @@ private:
 
     Light read_light(const Path& where, NodeId id) {
         const auto type = read_type(where, id, kLightTypes, "a light, an object");
-        if (!type) {
-            return PointLight{};
-        }
-        if (*type == 0) {
-            const Members members(reader_, where, id, kPointLightKeys, "a point light");
-            PointLight light;
-            members.need_pair("position", "a point [x, y]", light.position);
-            light.unit = read_strength(members, where, light.intensity, light.height);
-            members.number("radius", light.radius);
-            only_for_radiant(members, where, "radius", light.unit);
-            return light;
-        }
-        if (*type == 1) {
-            const Members members(reader_, where, id, kSpotKeys, "a spot light");
-            SpotLight light;
-            members.need_pair("position", "a point [x, y]", light.position);
-            members.need_number("direction", light.direction_deg);
-            members.need_number("inner_angle", light.inner_angle_deg);
-            members.need_number("outer_angle", light.outer_angle_deg);
-            light.unit = read_strength(members, where, light.intensity, light.height);
-            members.number("tilt", light.tilt_deg);
-            if (light.unit == LightUnit::radiant) {
-                refuse(members, where, "tilt", "is for a spot in candela or lumens, at a height");
-            }
-            return light;
-        }
-        const Members members(reader_, where, id, kDirectionalKeys, "a directional light");
-        DirectionalLight light;
-        members.need_number("direction", light.direction_deg);
-        if (members.find("lux") == kNoNode) {
-            members.need_colour("irradiance", light.irradiance);
-            refuse(members, where, "elevation", "is for a light in lux, of the world above the canvas");
-            return light;
-        }
-        members.need_colour("lux", light.irradiance);
-        refuse(members, where, "irradiance", "must not stand together with \"lux\": keep one");
-        light.elevation_deg = kUnread;
-        members.need_number("elevation", *light.elevation_deg);
-        return light;
-    }
-
-    // A key that may not stand where it does.
-    void refuse(const Members& members, const Path& where, std::string_view key, std::string_view message) {
-        if (const NodeId id = members.find(key); id != kNoNode) {
-            reader_.report(where.key(key), id, "conflict", [&] { return std::string(message); });
-        }
-    }
-
-    void only_for_radiant(const Members& members, const Path& where, std::string_view key, LightUnit unit) {
-        if (unit != LightUnit::radiant) {
-            refuse(members, where, key, "is for a light with an \"intensity\", not for one in candela or lumens");
-        }
-    }
-
-    // One of intensity, candela and lumens; the latter two with a height.
-    LightUnit read_strength(const Members& members, const Path& where, Colour& intensity, double& height) {
-        const bool candela = members.find("candela") != kNoNode;
-        if (!candela && members.find("lumens") == kNoNode) {
-            members.need_colour("intensity", intensity);
-            refuse(members, where, "height", "is for a light in candela or lumens");
-            return LightUnit::radiant;
-        }
-        const std::string unit = candela ? "candela" : "lumens";
-        members.need_colour(unit, intensity);
-        const std::string together = "must not stand together with \"" + unit + "\": keep one";
-        refuse(members, where, "intensity", together);
-        if (candela) {
-            refuse(members, where, "lumens", together);
-        }
-        members.need_number("height", height);
-        return candela ? LightUnit::candela : LightUnit::lumens;
+        return type ? light_of_type(reader_, where, id, *type) : PointLight{};
     }
 
     std::optional<std::size_t> read_choice(const Members& members, const Path& where,
