@@ -27,6 +27,8 @@
 #include "core/passes/recorder.h"
 #include "core/passes/lit_solids.h"
 #include "core/passes/picture_reader.h"
+#include "core/passes/closed_pass.h"
+#include "core/passes/lone_pass.h"
 #include "core/passes/reference_pass.h"
 #include "core/passes/resolve_pass.h"
 #include "core/passes/scene_buffers.h"
@@ -39,6 +41,7 @@
 #include "core/views/views.h"
 #include "glsl/cascade.h"
 #include "glsl/distance.h"
+#include "glsl/exact.h"
 
 namespace penumbra {
 namespace {
@@ -57,6 +60,8 @@ struct Renderer::Impl {
           cascade(options.shader_dir),
           rc_fix(options.shader_dir),
           resolve(options.shader_dir),
+          lone(options.shader_dir),
+          closed(options.shader_dir),
           hrc(options.shader_dir),
           reference(options.shader_dir),
           exact(options.shader_dir),
@@ -106,6 +111,8 @@ struct Renderer::Impl {
     CascadePass cascade;
     RcFixPass rc_fix;
     ResolvePass resolve;
+    LonePass lone;
+    ClosedPass closed;
     HrcPass hrc;
     ReferencePass reference;
     ExactPass exact;
@@ -278,6 +285,9 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     if (!plan.jump_steps.empty())
         record.pass("jump flood", plan.grid.size, [&] { return jump_flood.run(plan, settings, field); });
 
+    if (!plan.closed_tiles.empty())
+        record.pass("closed", {glsl::kExactTile * glsl::kExactTile, static_cast<int>(plan.closed_tiles.size())}, [&] { return closed.run(plan, settings, field); });
+
     if (scene.render.view != "final") {
         record.host("view", plan.shown.size, [&] { result.picture = draw_view(plan, scene, field, lists); });
         context.check_reset();
@@ -329,6 +339,7 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
             radiance = std::move(resolved);
             return work;
         });
+    if (plan.lone) record.pass("lone pixels", plan.lit.size, [&] { return lone.run(plan, scene.sky, field, settings, radiance); });
     gl::Texture2D lights;
     // On a floor with relief lights without a size are added to what it sends up.
     const bool lit_floor = plan.floor.relief && scene.output.solids != Solids::lit;

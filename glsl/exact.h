@@ -127,6 +127,7 @@ struct ExactParams {
     ivec2 fill_first;    // first of those pixels, of the band
     int fill_row;        // where their rows begin in the image
     int pad7;
+    vec4 most;           // no pixel has more light, by colour
 };
 
 #ifdef __cplusplus

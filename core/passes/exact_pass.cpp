@@ -5,8 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numbers>
 #include <numeric>
+
+#include <glm/common.hpp>
 
 #include "core/device_error.h"
 #include "core/passes/exact_band.h"
@@ -22,6 +25,16 @@ gl::BufferTexture sector_table(const ExactPlan& plan) {
         table.push_back(glm::vec4(std::cos(angle), std::sin(angle), angle, 0));
     }
     return gl::BufferTexture(GL_RGBA32F, table.data(), table.size() * sizeof(glm::vec4));
+}
+
+// No pixel's mean radiance is above that of the brightest source, colour by colour. With bounces there is no such bound.
+glm::vec4 most_light(const PackedOutline& outline, const Sky& sky, double radiance_scale, bool bounces) {
+    if (bounces) return glm::vec4(std::numeric_limits<float>::max());
+    Colour brightest = sky.radiance;
+    for (const SkyStop& stop : sky.gradient) brightest = glm::max(brightest, stop.radiance);
+    glm::vec4 most(glm::vec3(brightest / radiance_scale), 0.0f);
+    for (const glm::vec4& light : outline.lights_of) most = glm::max(most, light);
+    return most;
 }
 
 }  // namespace
@@ -222,6 +235,8 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
     gl::Texture2D* const results[] = {&out.mean, &out.moment_x, &out.moment_y};
     const int moments = exact.moments ? 3 : 1;
     for (int i = 0; i < moments; ++i) *results[i] = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.lit.size);
+    params.most = most_light(exact.outline, sky, plan.radiance_scale, exact.bounces > 0);
+
     if (exact.surfaces) bounce(plan, settings, delta, record, band);
     for (int row = 0; row < plan.canvas.y; row += exact.band_rows) {
         band.area = {plan.canvas.x, std::min(exact.band_rows, plan.canvas.y - row)};
