@@ -29,6 +29,7 @@ BEYOND_BY_NAME = {
     "white_without_its_curve": "one key against another",
     "region_outside": "a pixel against the canvas",
     "region_too_wide": "a part against the canvas",
+    "path_far": "where the path data leads",
 }
 
 
