@@ -160,6 +160,16 @@ public:
             };
             made_.nodes.push_back({glm::vec4(glm::vec2(place), glm::vec2(normal)), glm::vec2(end_of(i + 1) - end_of(i)), static_cast<std::uint32_t>(made_.elements) + static_cast<std::uint32_t>(i)});
         }
+        const int chords = reflects ? count : element_count(course, size_);
+        for (int i = 0; i < chords; ++i) {
+            const auto end_of = [&](int element) {
+                const double u = element_start(element, chords, course.whole);
+                if (!piece.is_arc) return glm::dvec2(ends.x, ends.y) * (1 - u) + glm::dvec2(ends.z, ends.w) * u;
+                return frame_.point(piece.at(piece.t0 + u * (piece.t1 - piece.t0)));
+            };
+            made_.chords.push_back({glm::vec4(glm::vec2(end_of(i)), glm::vec2(end_of(i + 1))),
+                                    static_cast<std::uint32_t>(made_.elements) + static_cast<std::uint32_t>(reflects ? i : 0)});
+        }
         made_.elements += static_cast<std::size_t>(count) + 1;
     }
 

@@ -71,7 +71,7 @@ Offsets exact_fields() {
             FIELD(ExactParams, first_count), FIELD(ExactParams, capacity), FIELD(ExactParams, continues),
             FIELD(ExactParams, light_scale), FIELD(ExactParams, tolerance), FIELD(ExactParams, kink_cell),
             FIELD(ExactParams, floor_share), FIELD(ExactParams, ask_first), FIELD(ExactParams, strict_dark),
-            FIELD(ExactParams, pad0), FIELD(ExactParams, pad1), FIELD(ExactParams, root_counts),
+            FIELD(ExactParams, first_ask), FIELD(ExactParams, pad1), FIELD(ExactParams, root_counts),
             FIELD(ExactParams, root_lights), FIELD(ExactParams, wide), FIELD(ExactParams, jobs),
             FIELD(ExactParams, list_origin), FIELD(ExactParams, window),
             FIELD(ExactParams, fill_first), FIELD(ExactParams, fill_row), FIELD(ExactParams, pad7)};

@@ -41,7 +41,7 @@ struct Bound {
 Bound bound_of(const Way& way) {
     if (way.method == "exact") return way.quality == Quality::draft ? Bound{4e-3, 0.25} : way.quality == Quality::standard ? Bound{1e-3, 0.06} : Bound{1e-4, 0.02};
     if (way.method == "reference") return {0.02, 0.5};
-    return {0.1, 1.01};
+    return {0.15, 1.01};
 }
 
 // What is wrong with this scene's picture; empty: nothing, or the method refused it in words.
@@ -136,8 +136,14 @@ TEST(Regressions, StayMended) {
     }
 }
 
-TEST(Random, MildScenes) { hunt("mild", mild_scene, 1, 30 * scale()); }
-TEST(Random, WildScenes) { hunt("wild", wild_scene, 1, 50 * scale()); }
+// PENUMBRA_STABILITY_FIRST_SEED=1000 looks at others.
+std::uint64_t first_seed() {
+    const char* text = std::getenv("PENUMBRA_STABILITY_FIRST_SEED");
+    return text != nullptr ? std::strtoull(text, nullptr, 10) : 1;
+}
+
+TEST(Random, MildScenes) { hunt("mild", mild_scene, first_seed(), 30 * scale()); }
+TEST(Random, WildScenes) { hunt("wild", wild_scene, first_seed(), 50 * scale()); }
 
 // The suite's own tools: the text of a scene gives the scene back, and shrinking finds what it is about.
 TEST(Tools, TheTextOfASceneGivesTheSamePicture) {
