@@ -41,7 +41,7 @@ void main() {
                          imageLoad(slope_y_image, from).rgb * away.y);
             sum += w.x * w.y * value;
         }
-        sum = clamp(sum, kSigned != 0 ? -params.most.rgb : vec3(0.0), params.most.rgb);
+        if (kSigned == 0) sum = clamp(sum, vec3(0.0), params.most.rgb);
     }
     imageStore(radiance_image, texel + ivec2(0, params.fill_row), vec4(sum, 1.0));
 }

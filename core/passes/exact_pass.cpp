@@ -27,9 +27,10 @@ gl::BufferTexture sector_table(const ExactPlan& plan) {
     return gl::BufferTexture(GL_RGBA32F, table.data(), table.size() * sizeof(glm::vec4));
 }
 
-// No pixel's mean radiance is above that of the brightest source, colour by colour. With bounces there is no such bound.
-glm::vec4 most_light(const PackedOutline& outline, const Sky& sky, double radiance_scale, bool bounces) {
-    if (bounces) return glm::vec4(std::numeric_limits<float>::max());
+// No pixel's mean radiance is above that of the brightest source, colour by colour. Where pieces shine differently from place to place
+// no such bound is kept.
+glm::vec4 most_light(const PackedOutline& outline, const Sky& sky, double radiance_scale, bool surfaces) {
+    if (surfaces) return glm::vec4(std::numeric_limits<float>::max());
     Colour brightest = sky.radiance;
     for (const SkyStop& stop : sky.gradient) brightest = glm::max(brightest, stop.radiance);
     glm::vec4 most(glm::vec3(brightest / radiance_scale), 0.0f);
@@ -235,8 +236,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
     gl::Texture2D* const results[] = {&out.mean, &out.moment_x, &out.moment_y};
     const int moments = exact.moments ? 3 : 1;
     for (int i = 0; i < moments; ++i) *results[i] = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.lit.size);
-    params.most = most_light(exact.outline, sky, plan.radiance_scale, exact.bounces > 0);
-
+    params.most = most_light(exact.outline, sky, plan.radiance_scale, exact.surfaces);
     if (exact.surfaces) bounce(plan, settings, delta, record, band);
     for (int row = 0; row < plan.canvas.y; row += exact.band_rows) {
         band.area = {plan.canvas.x, std::min(exact.band_rows, plan.canvas.y - row)};

@@ -9,8 +9,6 @@
 #include <set>
 #include <unordered_map>
 
-#include <glm/common.hpp>
-
 #include "core/plan/closed.h"
 #include "core/plan/corners.h"
 #include "core/plan/pack.h"
@@ -292,9 +290,7 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
                         out.entries.push_back(vec(piece.u * scale, piece.v * scale));
                         break;
                 }
-                // Of a gradient the brightest of both ends, channel by channel: what it really is the surfaces tell.
-                const Colour most = material.slope == Colour(0) ? material.emission : glm::max(material.emission_at(piece.a), material.emission_at(piece.b));
-                out.lights_of.resize(out.entries.size(), glm::vec4(glm::vec3(most / radiance_scale),
+                out.lights_of.resize(out.entries.size(), glm::vec4(glm::vec3(material.emission / radiance_scale),
                                                                    static_cast<float>(out.pieces)));
                 if (in_parts) surfaces.add(piece, ends, radiance_scale);
                 ++out.pieces;

@@ -121,6 +121,7 @@ rule_one_door_each() {
     files "$cpp" core server | grep -v '^server/cli/' | includes | search_include 'CLI/|CLI11'
     files "$cpp" core server | grep -v '^core/gl/' | includes | search_include "$gl_headers"
     files "$cpp" core server | grep -v '^core/outline/' | includes | search_include 'ft2build\.h|freetype/'
+    files "$cpp" core server | grep -v '^server/redis/' | includes | search_include 'hiredis/'
     files "$cpp" core server | grep -v '^core/image/' | includes | search_include 'spng\.h|libdeflate\.h|stb'
 }
 

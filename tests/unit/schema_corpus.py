@@ -31,6 +31,7 @@ BEYOND_BY_NAME = {
     "floor_tile_alone": "one key against others",
     "region_outside": "a pixel against the canvas",
     "region_too_wide": "a part against the canvas",
+    "path_far": "where the path data leads",
 }
 
 
