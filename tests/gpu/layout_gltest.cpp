@@ -11,15 +11,19 @@
 #include "core/device_error.h"
 #include "core/gl/program.h"
 #include "glsl/cascade.h"
+#include "glsl/closed.h"
 #include "glsl/compose.h"
 #include "glsl/delta.h"
 #include "glsl/distance.h"
 #include "glsl/exact.h"
+#include "glsl/floor.h"
 #include "glsl/hrc.h"
 #include "glsl/jump.h"
 #include "glsl/loop_probe.h"
+#include "glsl/lone.h"
 #include "glsl/reference.h"
 #include "glsl/rc_fix.h"
+#include "glsl/lone.h"
 #include "glsl/resolve.h"
 #include "tests/gpu/shared_context.h"
 
@@ -74,7 +78,7 @@ Offsets exact_fields() {
             FIELD(ExactParams, first_ask), FIELD(ExactParams, pad1), FIELD(ExactParams, root_counts),
             FIELD(ExactParams, root_lights), FIELD(ExactParams, wide), FIELD(ExactParams, jobs),
             FIELD(ExactParams, list_origin), FIELD(ExactParams, window),
-            FIELD(ExactParams, fill_first), FIELD(ExactParams, fill_row), FIELD(ExactParams, pad7)};
+            FIELD(ExactParams, fill_first), FIELD(ExactParams, fill_row), FIELD(ExactParams, pad7), FIELD(ExactParams, most)};
 }
 
 Offsets delta_fields() {
@@ -129,6 +133,14 @@ std::vector<Layout> layouts() {
           FIELD(ResolveParams, tiles), FIELD(ResolveParams, texel), FIELD(ResolveParams, first_probe),
           FIELD(ResolveParams, spacing), FIELD(ResolveParams, aligned), FIELD(ResolveParams, first_pixel)},
          glsl::kResolveGroupX, glsl::kResolveGroupY},
+        {"closed.comp", sizeof(glsl::ClosedParams),
+         {FIELD(ClosedParams, origin), FIELD(ClosedParams, extent), FIELD(ClosedParams, canvas), FIELD(ClosedParams, border),
+          FIELD(ClosedParams, tile), FIELD(ClosedParams, pad0), FIELD(ClosedParams, pad1), FIELD(ClosedParams, pad2)},
+         glsl::kClosedGroupX, glsl::kClosedGroupY},
+        {"lone.comp", sizeof(glsl::LoneParams),
+         {FIELD(LoneParams, origin), FIELD(LoneParams, extent), FIELD(LoneParams, border), FIELD(LoneParams, first_pixel),
+          FIELD(LoneParams, domain), FIELD(LoneParams, sky)},
+         glsl::kLoneGroupX, glsl::kLoneGroupY},
         {"reference.comp", sizeof(glsl::ReferenceParams),
          {FIELD(ReferenceParams, origin), FIELD(ReferenceParams, extent), FIELD(ReferenceParams, border),
           FIELD(ReferenceParams, shape_count), FIELD(ReferenceParams, ray_count), FIELD(ReferenceParams, first_ray),
@@ -145,6 +157,10 @@ std::vector<Layout> layouts() {
         {"exact_reflect.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
         {"delta_lists.comp", sizeof(glsl::DeltaParams), delta_fields(), glsl::kDeltaGroupX, glsl::kDeltaGroupY},
         {"delta.comp", sizeof(glsl::DeltaParams), delta_fields(), glsl::kDeltaGroupX, glsl::kDeltaGroupY},
+        {"floor.comp", sizeof(glsl::FloorParams),
+         {FIELD(FloorParams, origin), FIELD(FloorParams, extent), FIELD(FloorParams, first_pixel), FIELD(FloorParams, radiance_scale),
+          FIELD(FloorParams, pad0)},
+         glsl::kFloorGroupX, glsl::kFloorGroupY},
         {"delta_nodes.comp", sizeof(glsl::DeltaParams), delta_fields(), glsl::kDeltaGroupX, glsl::kDeltaGroupY},
         {"hrc_low.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
         {"hrc_low_half.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
