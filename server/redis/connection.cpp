@@ -126,7 +126,7 @@ Redis::Redis(const RedisAddress& address) : context_(std::make_unique<Context>()
                                            : ::redisConnectUnixWithTimeout(address.socket.c_str(), patience);
     if (context_->raw == nullptr) throw std::bad_alloc();
     if (context_->raw->err != 0) throw RedisLost(to_string(address) + ": " + context_->raw->errstr);
-    ::redisEnableKeepAlive(context_->raw);
+    if (address.socket.empty()) ::redisEnableKeepAlive(context_->raw);
     if (!address.password.empty()) {
         command(address.user.empty() ? std::vector<std::string>{"AUTH", address.password}
                                      : std::vector<std::string>{"AUTH", address.user, address.password});
