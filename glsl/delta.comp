@@ -12,6 +12,7 @@ layout(binding = kDeltaLightsUnit) uniform samplerBuffer lights;
 layout(binding = kDeltaRadianceImage, rgba32f) uniform image2D radiance_image;
 
 #include "lib/delta.glsl"
+#include "lib/media.glsl"
 
 void main() {
     ivec2 at = params.origin + ivec2(gl_GlobalInvocationID.xy);
@@ -29,7 +30,16 @@ void main() {
         uvec4 head = texelFetch(heads, list + light);
         Arrival arrival = arrival_at(light, p, params.least_distance);
         bool dark = head.x == kDeltaDark || all(equal(arrival.strength, vec3(0.0)));
-        if (!dark && !list_hides(head, p, arrival.way, arrival.end)) sum += arrival.strength;
+        if (dark || list_hides(head, p, arrival.way, arrival.end)) continue;
+        vec3 through = vec3(1.0);
+        if (kSceneMedia != 0) {
+            float far = length(arrival.way);
+            vec3 gained;
+            int budget = kDeltaMediaBudget;
+            // The box of all media ends the way to what has no distance.
+            if (!cross_media(p, arrival.way / max(far, 1e-20), 0.0, arrival.end > 1.0 ? kFar : far, budget, gained, through)) through = vec3(0.0);
+        }
+        sum += through * arrival.strength;
     }
     vec4 radiance = params.adds != 0 ? imageLoad(radiance_image, place) : vec4(0.0, 0.0, 0.0, 1.0);
     imageStore(radiance_image, place, radiance + vec4(sum * 0.15915494309189535, 0.0));

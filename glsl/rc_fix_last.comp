@@ -32,8 +32,7 @@ void main() {
         float c = params.offset_cos[m];
         float s = params.offset_sin[m];
         vec2 d = vec2(centre.x * c - centre.y * s, centre.y * c + centre.x * s);
-        vec3 radiance;
-        float passes;
+        vec3 radiance, passes;
         march_cone(p + centre * params.start, d, max(sector * params.start, 0.05), sector, params.domain, params.border, budget, radiance, passes);
         vec3 sky = params.sky_first < 0 ? params.sky.rgb : texelFetch(sky_sectors, params.sky_first + 4 * group + m).rgb;
         sum += radiance + passes * sky;

@@ -35,8 +35,8 @@ struct DeltaPass::Lists {
 
 DeltaPass::DeltaPass(const std::string& shader_dir)
     : lists_("delta_lists.comp", sizeof(glsl::DeltaParams), shader_dir),
-      pixels_("delta.comp", sizeof(glsl::DeltaParams), shader_dir),
       nodes_("delta_nodes.comp", sizeof(glsl::DeltaParams), shader_dir),
+      pixels_("delta.comp", sizeof(glsl::DeltaParams), shader_dir),
       counters_(GL_R32UI, 8) {}
 
 int DeltaPass::make_lists(const Plan& plan, glm::ivec2 origin, glm::ivec2 area, Lists& lists) {
@@ -121,6 +121,8 @@ PassWork DeltaPass::pixels(const Plan& plan, const DistanceField& field, const P
     work.bytes = out.bytes();
     const std::size_t of_row = static_cast<std::size_t>(divided_up(plan.lit.size.x, glsl::kDeltaTile)) * static_cast<std::size_t>(plan.delta.size());
     const int rows = kCoarseTile * static_cast<int>(std::clamp<std::size_t>(kMostLists / (4 * of_row), 1, 1 << 12));
+    gl::ComputeProgram& program = pixels_.of(plan.needs.media ? march_constants(plan.needs) : gl::ShaderConstants{});
+    const int samples = plan.needs.media ? glsl::kDeltaMediaBudget / 8 : 1;
     for (int row = 0; row < plan.lit.size.y; row += rows) {
         Lists lists;
         const glm::ivec2 area{plan.lit.size.x, std::min(rows, plan.lit.size.y - row)};
@@ -129,8 +131,8 @@ PassWork DeltaPass::pixels(const Plan& plan, const DistanceField& field, const P
         lists.params.extent = area;
         out.bind_image(glsl::kDeltaRadianceImage, GL_READ_WRITE);
         field.distance.bind_texture(glsl::kDeltaDistanceUnit);
-        work.dispatches += in_slices(lists, 1, lists.params, [&](const glsl::DeltaParams& p) {
-            return pixels_.dispatch(p, p.extent, settings.pixels / static_cast<std::size_t>(1 + (p.end_light - p.first_light) / 4));
+        work.dispatches += in_slices(lists, samples, lists.params, [&](const glsl::DeltaParams& p) {
+            return program.dispatch(p, p.extent, settings.pixels / static_cast<std::size_t>(1 + (p.end_light - p.first_light) / 4));
         });
     }
     work.rays = static_cast<std::size_t>(plan.lit.size.x) * static_cast<std::size_t>(plan.lit.size.y) * static_cast<std::size_t>(plan.delta.size());

@@ -36,7 +36,8 @@ private:
     template <class Dispatch>
     int in_slices(const Lists& lists, int samples, glsl::DeltaParams params, const Dispatch& dispatch);
 
-    gl::ComputeProgram lists_, pixels_, nodes_;
+    gl::ComputeProgram lists_, nodes_;
+    gl::ProgramForms pixels_;
     gl::StorageBuffer coarse_heads_, coarse_entries_, heads_, entries_, counters_;
 };
 

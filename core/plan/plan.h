@@ -83,6 +83,7 @@ struct ProgramNeeds {
     bool outlines = true;  // polylines and polygons
     bool bitmaps = true;
     bool surfaces = false;  // that shine with light that bounced, as sampled rays meet them
+    bool media = false;     // translucent shapes
 };
 
 struct Plan {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "core/plan/support.h"
 
+#include <cstddef>
+#include <string>
+
 namespace penumbra {
 
 Problems unsupported(const Scene& scene, const Features& features) {
@@ -9,6 +12,13 @@ Problems unsupported(const Scene& scene, const Features& features) {
         problems.push_back({std::move(pointer), "not_supported_yet", what + " not supported yet"});
     };
     if (scene.render.method == "hybrid") refuse("/render/method", "the method 'hybrid' is");
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        if (!scene.shapes[i].medium) continue;
+        const std::string medium = "/shapes/" + std::to_string(i) + "/medium";
+        if (scene.render.method == "exact") refuse("/render/method", "the method 'exact' with translucent shapes (" + medium + ") is");
+        if (scene.render.bounces > 0) refuse("/render/bounces", "light that bounces in a scene with translucent shapes (" + medium + ") is");
+        break;
+    }
     const std::string& view = scene.render.view;
     if (view != "final" && view != "distance" && view != "normals" && view != "tiles")
         problems.push_back({"/render/view", "not_supported_yet",

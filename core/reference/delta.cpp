@@ -30,9 +30,10 @@ double spot_factor(const SpotLight& light, Point from_light) {
 
 }  // namespace
 
-DeltaLights::DeltaLights(const Scene& scene, const Boundary& boundary)
+DeltaLights::DeltaLights(const Scene& scene, const Boundary& boundary, const Media& media)
     : lights_(scene.lights),
       boundary_(boundary),
+      media_(media),
       least_distance_(0.5 * scene.canvas.pixel_size()) {}
 
 DeltaLights::Arrival DeltaLights::arrival(const Light& light, Point p) const {
@@ -74,7 +75,7 @@ Colour DeltaLights::mean_radiance(Point p, Point forward, const std::vector<Inte
     for (const Light& light : lights_) {
         const Arrival way = arrival(light, p);
         if (way.strength == Colour(0) || !is_visible(way, p, forward, seen)) continue;
-        sum += way.strength / (2 * kPi);
+        sum += media_.along(p, way.direction, way.distance).transmittance * way.strength / (2 * kPi);
     }
     return sum;
 }

@@ -20,6 +20,8 @@ struct Limits {
     std::size_t max_points = 200000;
     std::size_t max_lights = 1000;
     std::size_t max_sky_stops = 256;
+    // Of translucent shapes, in all: a ray asks each of them. A polygon has as many as points, others one, a polyline as segments.
+    std::size_t max_medium_edges = 256;
     // One atlas; a picture is decoded to 4 bytes a texel.
     int max_bitmap_side_px = 8192;
     double max_bitmap_texels = 4096.0 * 4096.0;  // of all bitmaps together

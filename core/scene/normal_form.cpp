@@ -80,8 +80,12 @@ public:
         bytes_.append(reinterpret_cast<const char*>(rgba.data()), rgba.size());
     }
     void put(const Shape& shape) {
-        const auto& [geometry, emission, albedo] = shape;
-        put_all(geometry, emission, albedo);
+        const auto& [geometry, emission, albedo, medium] = shape;
+        put_all(geometry, emission, albedo, medium);
+    }
+    void put(const Medium& medium) {
+        const auto& [extinction, emission] = medium;
+        put_all(extinction, emission);
     }
     void put(const PointLight& light) {
         const auto& [position, intensity, radius] = light;
@@ -134,8 +138,8 @@ public:
                 white.value_or(kDefaultWhite), dither);
     }
     void put(const Scene& scene) {
-        const auto& [canvas, sky, shapes, lights, render, output] = scene;
-        put_all(canvas, sky, shapes, lights, render, output);
+        const auto& [canvas, sky, shapes, lights, render, output, media] = scene;
+        put_all(canvas, sky, shapes, lights, render, output, media);
     }
 
     std::string take() { return std::move(bytes_); }

@@ -94,10 +94,17 @@ struct Bitmap {
 
 using Geometry = std::variant<Circle, Ellipse, Rect, Line, Polyline, Polygon, Bitmap>;
 
+// What a translucent shape is filled with, per world unit of a ray's way through it (docs/methods/media.md).
+struct Medium {
+    Colour extinction{0};
+    Colour emission{0};
+};
+
 struct Shape {
     Geometry geometry;
     Colour emission{0};  // ignored for Bitmap
     Colour albedo{0};    // ignored for Bitmap
+    std::optional<Medium> medium{};  // then it is translucent, and free space
 };
 
 struct PointLight {
@@ -206,6 +213,8 @@ struct Scene {
     std::vector<Light> lights;
     RenderSettings render;
     OutputSettings output;
+    // Translucent shapes, once lowered (core/scene/lower.h) has taken them out of `shapes`; the later is on top.
+    std::vector<Shape> media{};
 };
 
 }  // namespace penumbra

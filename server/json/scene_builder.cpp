@@ -9,6 +9,7 @@
 #include "core/scene/wording.h"
 #include "server/json/sky_picture.h"
 #include "server/json/bitmap_reader.h"
+#include "server/json/material_reader.h"
 #include "server/json/outline_reader.h"
 #include "server/json/scene_keys.h"
 #include "server/json/value_reader.h"
@@ -232,17 +233,14 @@ private:
         return shape;
     }
 
-    static void read_material(const Members& members, Shape& shape) {
-        members.colour("emission", shape.emission);
-        members.colour("albedo", shape.albedo);
-    }
+    void read_material(const Members& members, const Path& where, Shape& shape) { penumbra::read_material(reader_, members, where, limits_, shape); }
 
     Circle read_circle(const Path& where, NodeId id, Shape& shape) {
         const Members members(reader_, where, id, kCircleKeys, "a circle");
         Circle circle;
         members.need_pair("center", "a point [x, y]", circle.center);
         members.need_number("radius", circle.radius);
-        read_material(members, shape);
+        read_material(members, where, shape);
         return circle;
     }
 
@@ -252,7 +250,7 @@ private:
         members.need_pair("center", "a point [x, y]", ellipse.center);
         members.need_pair("radii", "two radii [x, y]", ellipse.radii);
         members.number("rotation", ellipse.rotation_deg);
-        read_material(members, shape);
+        read_material(members, where, shape);
         return ellipse;
     }
 
@@ -263,7 +261,7 @@ private:
         members.need_pair("size", "a size [width, height]", rect.size);
         members.number("rotation", rect.rotation_deg);
         members.number("corner_radius", rect.corner_radius);
-        read_material(members, shape);
+        read_material(members, where, shape);
         return rect;
     }
 
@@ -273,7 +271,7 @@ private:
         members.need_pair("from", "a point [x, y]", line.from);
         members.need_pair("to", "a point [x, y]", line.to);
         members.number("width", line.width);
-        read_material(members, shape);
+        read_material(members, where, shape);
         return line;
     }
 
@@ -283,7 +281,7 @@ private:
         members.need_points("points", polyline.points);
         members.number("width", polyline.width);
         members.boolean("closed", polyline.closed);
-        read_material(members, shape);
+        read_material(members, where, shape);
         return polyline;
     }
 
@@ -291,7 +289,7 @@ private:
         const Members members(reader_, where, id, kPolygonKeys, "a polygon");
         Polygon polygon;
         members.need_points("points", polygon.points);
-        read_material(members, shape);
+        read_material(members, where, shape);
         return polygon;
     }
 
