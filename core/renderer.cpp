@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "core/film/exposure.h"
+#include "core/gl/checkpoint.h"
 #include "core/gl/context.h"
 #include "core/gl/loop_limit.h"
 #include "core/gl/storage_buffer.h"
@@ -25,6 +26,8 @@
 #include "core/passes/recorder.h"
 #include "core/passes/lit_solids.h"
 #include "core/passes/picture_reader.h"
+#include "core/passes/closed_pass.h"
+#include "core/passes/lone_pass.h"
 #include "core/passes/reference_pass.h"
 #include "core/passes/resolve_pass.h"
 #include "core/passes/scene_buffers.h"
@@ -37,6 +40,7 @@
 #include "core/views/views.h"
 #include "glsl/cascade.h"
 #include "glsl/distance.h"
+#include "glsl/exact.h"
 
 namespace penumbra {
 namespace {
@@ -55,6 +59,8 @@ struct Renderer::Impl {
           cascade(options.shader_dir),
           rc_fix(options.shader_dir),
           resolve(options.shader_dir),
+          lone(options.shader_dir),
+          closed(options.shader_dir),
           hrc(options.shader_dir),
           reference(options.shader_dir),
           exact(options.shader_dir),
@@ -103,6 +109,8 @@ struct Renderer::Impl {
     CascadePass cascade;
     RcFixPass rc_fix;
     ResolvePass resolve;
+    LonePass lone;
+    ClosedPass closed;
     HrcPass hrc;
     ReferencePass reference;
     ExactPass exact;
@@ -274,6 +282,9 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     if (!plan.jump_steps.empty())
         record.pass("jump flood", plan.grid.size, [&] { return jump_flood.run(plan, settings, field); });
 
+    if (!plan.closed_tiles.empty())
+        record.pass("closed", {glsl::kExactTile * glsl::kExactTile, static_cast<int>(plan.closed_tiles.size())}, [&] { return closed.run(plan, settings, field); });
+
     if (scene.render.view != "final") {
         record.host("view", plan.shown.size, [&] { result.picture = draw_view(plan, scene, field, lists); });
         context.check_reset();
@@ -319,6 +330,7 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
             radiance = std::move(resolved);
             return work;
         });
+    if (plan.lone) record.pass("lone pixels", plan.lit.size, [&] { return lone.run(plan, scene.sky, field, settings, radiance); });
     gl::Texture2D lights;
     if (plan.delta.used()) record.pass("lights", plan.lit.size, [&] { return delta.pixels(plan, field, settings, lights); });
     // Where there is no light one black texel stands for every pixel.
@@ -383,12 +395,15 @@ Renderer::~Renderer() {
 
 const DeviceInfo& Renderer::device() const { return impl_->info; }
 
-RenderResult Renderer::render(const Scene& given) {
+RenderResult Renderer::render(const Scene& given, const StopCheck& stop) {
     Scene made;
     if (needs_lowering(given)) made = lowered(given);
     const Scene& scene = needs_lowering(given) ? made : given;
     impl_->check_thread();
     impl_->context.make_current();
+    const gl::CheckpointScope stopping([&] {
+        if (stop && stop()) throw RenderStopped();
+    });
     try {
         return impl_->render(scene);
     } catch (const TooDense& problem) {

@@ -14,6 +14,7 @@
 #include "core/render_stats.h"
 #include "core/scene/limits.h"
 #include "core/scene/scene.h"
+#include "core/stop.h"
 
 namespace penumbra {
 
@@ -55,7 +56,8 @@ public:
     Renderer& operator=(const Renderer&) = delete;
 
     // Precondition: validate(scene) and unsupported(scene, features) are empty. Throws DeviceError.
-    RenderResult render(const Scene& scene);
+    // Throws RenderStopped when `stop` says so.
+    RenderResult render(const Scene& scene, const StopCheck& stop = {});
 
     const DeviceInfo& device() const;
 

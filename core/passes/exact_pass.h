@@ -74,7 +74,7 @@ private:
     gl::ComputeProgram reflect_;
     gl::StorageBuffer coarse_heads_, coarse_entries_, coarse_lights_;
     gl::StorageBuffer heads_, entries_, lights_;
-    gl::StorageBuffer points_, jobs_, counters_, means_;
+    gl::StorageBuffer asks_, points_, jobs_, counters_, means_;
     gl::StorageBuffer elements_, elements_before_, change_;
 };
 

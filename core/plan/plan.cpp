@@ -9,11 +9,13 @@
 
 #include "core/device_error.h"
 #include "core/plan/choose.h"
+#include "core/plan/closed.h"
 #include "core/plan/pack.h"
 #include "core/plan/saving.h"
 #include "core/plan/skip.h"
 #include "core/plan/sky.h"
 #include "core/scene/words.h"
+#include "glsl/exact.h"
 #include "glsl/scene_records.h"
 #include "glsl/surface_records.h"
 
@@ -429,6 +431,17 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     plan.resolve = !plan.cascades.empty() && !(resolved && skip(Saving::resolve));
     if (!plan.resolve && !plan.cascades.empty())
         leave_out("resolve", "cascade 0 is the mean radiance of each pixel", pixels);
+
+    // Closed-off pixels are black, which they are as well where they count as solid: of a lamp without a size, or of a view, they are not.
+    const std::vector<DarkRegion>& dark = plan.exact.outline.dark_regions;
+    if (exact && !dark.empty() && !plan.delta.used() && scene.render.view == "final" && scene.output.solids == Solids::emission &&
+        !scene.output.auto_key && skip(Saving::closed)) {
+        plan.closed_tiles = tiles_within(dark, plan.canvas, glsl::kExactTile);
+        const double closed = double(plan.closed_tiles.size()) * glsl::kExactTile * glsl::kExactTile;
+        if (closed > 0) leave_out("closed-off pixels", "no light gets there", closed);
+    }
+    const bool interpolated = plan.hrc.active() ? !plan.hrc.aligned() : !plan.cascades.empty() && settings.spacing_px != 1.0;
+    plan.lone = interpolated && !plan.shape_slices.empty();
 
     std::size_t largest_area = area(plan.canvas);
     for (const CascadePlan& c : plan.cascades) largest_area = std::max(largest_area, area(c.texture));

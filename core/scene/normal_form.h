@@ -3,13 +3,18 @@
 // and values that are the default anyway do not show.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/scene/scene.h"
 
 namespace penumbra {
 
-// Equal exactly when the scenes are. For keys within one build: the bytes may be others in the next.
+// Equal exactly when the scenes are. For use within one build: the bytes may be others in the next.
 std::string normal_form(const Scene& scene);
+
+// The scene that has this form; nothing when the bytes are none.
+std::optional<Scene> read_normal_form(std::string_view bytes);
 
 }  // namespace penumbra

@@ -104,7 +104,7 @@ std::string run_case(const BenchCase& c, const BenchSettings& settings, RenderBa
     const Scene scene = bench_scene(c.scene, text, overrides);
     for (const Problem& problem : engine.unsupported_with({})(scene)) throw std::runtime_error(problem.pointer + ": " + problem.message);
 
-    for (int i = 0; i < settings.warm_up; ++i) backend.render(scene);
+    for (int i = 0; i < settings.warm_up; ++i) backend.render(scene, {});
     std::vector<RenderStats> runs;
     std::vector<double> wall;
     std::vector<double> gpu;
@@ -114,7 +114,7 @@ std::string run_case(const BenchCase& c, const BenchSettings& settings, RenderBa
     for (int i = 0; i < settings.repeats && (i < 3 || spent_ms < 1e3 * settings.most_seconds); ++i) {
         const auto start = std::chrono::steady_clock::now();
         const double cpu_start = process_cpu_ms();
-        RenderResult result = backend.render(scene);
+        RenderResult result = backend.render(scene, {});
         cpu.push_back(process_cpu_ms() - cpu_start);
         wall.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
         spent_ms += wall.back();

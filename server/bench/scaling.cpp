@@ -61,10 +61,10 @@ void measure_scaling(const ScalingSettings& settings, RenderBackend& backend, co
                 RenderStats stats;
                 try {
                     // The first renders of a process and of a kind of scene compile.
-                    for (int i = 0; i < (step == curve.steps.front() ? 3 : 1); ++i) backend.render(scene);
+                    for (int i = 0; i < (step == curve.steps.front() ? 3 : 1); ++i) backend.render(scene, {});
                     for (int i = 0; i < settings.repeats; ++i) {
                         const double start = process_cpu_ms();
-                        stats = backend.render(scene).stats;
+                        stats = backend.render(scene, {}).stats;
                         cpu.push_back(process_cpu_ms() - start);
                         if (cpu.back() > 1e3 * settings.most_seconds) break;
                     }

@@ -20,7 +20,7 @@ struct Side {
 
     void render(RenderBackend& backend, bool counts) {
         const double start = process_cpu_ms();
-        RenderResult result = backend.render(scene);
+        RenderResult result = backend.render(scene, {});
         if (counts) cpu_ms.push_back(process_cpu_ms() - start);
         stats = std::move(result.stats);
     }
@@ -97,7 +97,7 @@ std::string skip_rows(const std::string& path, const std::string& method, const 
     for (const SavingName& one : kSavings) {
         Scene kept = lean;
         kept.render.keep = static_cast<std::uint32_t>(one.saving);
-        const RenderStats stats = backend.render(kept).stats;
+        const RenderStats stats = backend.render(kept, {}).stats;
         if (same_skips(stats, all.with.stats) && work_of(stats) == work_of(all.with.stats)) continue;  // this scene has none of it
         rows += row_text(name, method, std::string(one.name), measure(lean, kept, settings, backend));
     }

@@ -51,7 +51,9 @@ std::string stranger(const CLI::App& app, const std::string& word) {
 
 std::string in_words(const CLI::App& app, const CLI::ParseError& error) {
     std::vector<std::string> commands;
-    for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+    for (const CLI::App* command : app.get_subcommands({})) {
+        if (!command->get_group().empty()) commands.push_back(command->get_name());
+    }
     const std::string list = "; there are " + CLI::detail::join(commands, ", ");
     const bool extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
     const bool missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;

@@ -66,6 +66,27 @@ void add_config_options(CLI::App& command, Config& config) {
     option("--connections", config.spare_http_threads, "PENUMBRA_CONNECTIONS",
            "Connections served beside those that wait for a render")
         ->check(whole_number(2, 1000));
+    command
+        .add_option_function<std::string>(
+            "--workers", [&config](const std::string& word) { config.workers = same_letters(word, "auto") ? -1 : std::stoi(word); },
+            "Processes that render: auto is one for four processors; 0 renders in this process [auto]")
+        ->envname("PENUMBRA_WORKERS")
+        ->check(whole_number(0, 64) | one_of({"auto"}));
+    option("--worker-memory-mb", config.worker_memory_mb, "PENUMBRA_WORKER_MEMORY_MB",
+           "A worker that uses more MiB is replaced; 0 is no bound")
+        ->check(whole_number(0, 1 << 20));
+    option("--worker-renders", config.worker_renders, "PENUMBRA_WORKER_RENDERS",
+           "A worker is replaced after so many renders; 0 is never")
+        ->check(whole_number(0, 1'000'000'000));
+    option("--worker-silence", config.worker_silence_s, "PENUMBRA_WORKER_SILENCE",
+           "Seconds without a sign of life after which a worker counts as hanging")
+        ->check(whole_number(1, 3600));
+    option("--max-deadline", config.max_deadline_s, "PENUMBRA_MAX_DEADLINE",
+           "Seconds that a request may take at most; clients may ask for less")
+        ->check(whole_number(1, 86400));
+    option("--shutdown-timeout", config.shutdown_timeout_s, "PENUMBRA_SHUTDOWN_TIMEOUT",
+           "Seconds after the first signal after which renders are ended")
+        ->check(whole_number(0, 86400));
     option("--cache-bytes", config.cache_bytes, "PENUMBRA_CACHE_BYTES", "Bytes of pictures kept to be given again; 0 keeps none")
         ->check(whole_number(0, 1L << 46));
     command

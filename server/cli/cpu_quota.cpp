@@ -3,6 +3,7 @@
 
 #include <sched.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -18,15 +19,30 @@ int processors_of_cpu_max(std::string_view text) {
     return int(std::ceil(quota / period));
 }
 
-void limit_render_threads_to_cpu_quota() {
-    std::ifstream file("/sys/fs/cgroup/cpu.max");
-    std::string line;
-    if (!std::getline(file, line)) return;
-    const int quota = processors_of_cpu_max(line);
+namespace {
+
+int processors_by_affinity() {
     cpu_set_t set;
     CPU_ZERO(&set);
-    if (quota <= 0 || ::sched_getaffinity(0, sizeof set, &set) != 0) return;
-    if (quota < CPU_COUNT(&set)) ::setenv("LP_NUM_THREADS", std::to_string(quota).c_str(), 0);
+    return ::sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
+}
+
+int processors_by_quota() {
+    std::ifstream file("/sys/fs/cgroup/cpu.max");
+    std::string line;
+    return std::getline(file, line) ? processors_of_cpu_max(line) : 0;
+}
+
+}  // namespace
+
+int usable_processors() {
+    const int quota = processors_by_quota();
+    return std::max(quota > 0 ? std::min(quota, processors_by_affinity()) : processors_by_affinity(), 1);
+}
+
+void limit_render_threads_to_cpu_quota() {
+    const int quota = processors_by_quota();
+    if (quota > 0 && quota < processors_by_affinity()) ::setenv("LP_NUM_THREADS", std::to_string(quota).c_str(), 0);
 }
 
 }  // namespace penumbra

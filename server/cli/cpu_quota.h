@@ -10,6 +10,9 @@ namespace penumbra {
 // Called before any thread exists.
 void limit_render_threads_to_cpu_quota();
 
+// How many processors this process may use: by affinity and by the quota, whichever is fewer; at least 1.
+int usable_processors();
+
 // Whole processors in a cgroup v2 cpu.max ("200000 100000" is 2, rounded up); 0: no quota.
 int processors_of_cpu_max(std::string_view text);
 

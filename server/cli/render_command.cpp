@@ -58,7 +58,7 @@ int render_file(const RenderOptions& options, const Engine& engine) {
     // The device is asked for after the scene is known to be right: mistakes cost no start-up.
     const RenderResponse response =
         render_to_bytes(request, limits, engine.unsupported_with({.tone_lut = tone_lut != nullptr}), [&](const Scene& scene) {
-            return engine.make_backend({.device = options.device, .shader_dir = {}, .tone_lut = tone_lut})->render(scene);
+            return engine.make_backend({.device = options.device, .shader_dir = {}, .tone_lut = tone_lut})->render(scene, {});
         });
     if (response.failure != RenderFailure::none) {
         complain_about_scene(options.scene, response.problems, response.problems_left_out);

@@ -4,16 +4,23 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
 #include <ctime>
+#include <future>
 #include <memory>
+#include <thread>
 
 #include <CLI/CLI.hpp>
 
 #include "server/cli/commands.h"
 #include "server/cli/config_options.h"
+#include "server/cli/cpu_quota.h"
 #include "server/cli/files.h"
 #include "server/http/http_server.h"
 #include "server/service/version.h"
+#include "server/worker/process_backend.h"
 
 namespace penumbra {
 namespace {
@@ -43,6 +50,32 @@ void exit_at_next_signal(const sigset_t& set) {
     ::pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
 }
 
+// What makes the renderers: processes of this program, or this process.
+struct Workers {
+    std::size_t count = 1;
+    BackendFactory make;
+};
+
+Workers workers_of(const Config& config, const Engine& engine, std::shared_ptr<const ToneLut> tone_lut) {
+    if (config.workers == 0) {
+        return {1, [&, tone_lut] { return engine.make_backend({.device = config.device, .shader_dir = {}, .tone_lut = tone_lut}); }};
+    }
+    const int processors = usable_processors();
+    const int count = config.workers > 0 ? config.workers : std::max(processors / 4, 1);
+    WorkerProcessOptions options;
+    options.program = "/proc/self/exe";  // also when the file has been replaced since
+    options.arguments = {"worker-process", "--device", config.device};
+    if (!config.tone_lut.empty()) options.arguments.insert(options.arguments.end(), {"--tony-lut", config.tone_lut});
+    // They share the processors: llvmpipe's own count knows neither of the others nor of a quota.
+    if (std::getenv("LP_NUM_THREADS") == nullptr) {
+        options.environment = {{"LP_NUM_THREADS", std::to_string((processors + count - 1) / count)}};
+    }
+    options.silence = std::chrono::seconds(config.worker_silence_s);
+    options.most_memory_bytes = config.worker_memory_mb << 20;
+    options.most_renders = config.worker_renders;
+    return {std::size_t(count), [options] { return make_process_backend(options); }};
+}
+
 int serve(const Config& config, const Engine& engine) {
     const std::shared_ptr<const ToneLut> tone_lut = read_tone_lut(config.tone_lut);
     // Blocked before any thread exists, so that no thread but this one is interrupted.
@@ -50,8 +83,8 @@ int serve(const Config& config, const Engine& engine) {
     ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
     const Log log(config.log_format);
-    RenderWorker worker([&] { return engine.make_backend({.device = config.device, .shader_dir = {}, .tone_lut = tone_lut}); },
-                        config.queue_capacity, log, warm_up_scenes(config.warm_up));
+    const Workers workers = workers_of(config, engine, tone_lut);
+    RenderWorker worker(workers.make, config.queue_capacity, log, warm_up_scenes(config.warm_up), workers.count);
     RenderService service(worker, engine.unsupported_with({.tone_lut = tone_lut != nullptr}), config);
     HttpServer server(service, config, log);
     if (const std::string why = server.start(); !why.empty()) {
@@ -68,7 +101,8 @@ int serve(const Config& config, const Engine& engine) {
         const RenderWorker::Status status = worker.status();
         if (status.state == RenderWorker::State::ready && !told_ready) {
             told_ready = true;
-            log.info("ready", {{"device", status.device.renderer}});
+            log.info("ready", {{"device", status.device.renderer},
+                               {"workers", std::int64_t(config.workers == 0 ? 0 : status.workers)}});
         }
         if (status.state == RenderWorker::State::broken) {
             complain(status.reason);
@@ -82,7 +116,15 @@ int serve(const Config& config, const Engine& engine) {
     }
     log.info("stopping", {{"signal", std::int64_t(signal)}, {"waiting", std::int64_t(worker.status().waiting)}});
     exit_at_next_signal(signals);
+    std::promise<void> done;
+    std::thread limit([&, end = done.get_future()] {
+        if (end.wait_for(std::chrono::seconds(config.shutdown_timeout_s)) == std::future_status::ready) return;
+        log.warning("ending renders", {{"running", std::int64_t(worker.status().running)}});
+        service.stop_all();
+    });
     server.stop();
+    done.set_value();
+    limit.join();
     log.info("stopped");
     return kSuccess;
 }

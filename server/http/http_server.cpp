@@ -3,14 +3,13 @@
 // expressions, so that a path and a method are refused before a body is read.
 #include "server/http/http_server.h"
 
-#include <netdb.h>
-
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdint>
-#include <cstring>
+#include <cstdio>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -52,6 +51,12 @@ std::vector<std::string> header_values(const Request& request, const char* name)
     return values;
 }
 
+std::string short_number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
+    return text;
+}
+
 std::string joined(const std::vector<std::string>& values) {
     std::string text;
     for (const std::string& value : values) text += (text.empty() ? "" : ", ") + value;
@@ -81,16 +86,6 @@ ProblemKind kind_of(Fault fault) {
         case Fault::none: break;
     }
     return ProblemKind::bad_request;
-}
-
-// The library only says that it could not: the system's reason, as far as it is known.
-std::string why_not_bound(const std::string& host, int error) {
-    addrinfo* list = nullptr;
-    if (const int unknown = ::getaddrinfo(host.c_str(), nullptr, nullptr, &list); unknown != 0) {
-        return ::gai_strerror(unknown);
-    }
-    ::freeaddrinfo(list);
-    return error != 0 ? std::strerror(error) : "the address is not of this machine, or the port is taken or not allowed";
 }
 
 }  // namespace
@@ -282,6 +277,10 @@ struct HttpServer::Impl {
         const nlohmann::ordered_json json = {{"status", "ready"},
                                              {"version", version()},
                                              {"device", status.device.renderer},
+                                             {"workers", status.workers},
+                                             {"ready_workers", status.ready_workers},
+                                             {"lost", status.lost},
+                                             {"replaced", status.replaced},
                                              {"waiting", status.waiting},
                                              {"capacity", status.capacity},
                                              {"rendered", status.rendered},
@@ -376,6 +375,12 @@ struct HttpServer::Impl {
         wanted.text = body;
         wanted.formats = wishes;
         wanted.anew = has_directive(joined(header_values(request, "Cache-Control")), "no-cache");
+        const Exchange& exchange = GuardedServer::exchange();
+        const std::optional<double> wait = parse_wait(joined(header_values(request, "Prefer")));
+        const double seconds = std::min(wait.value_or(config.max_deadline_s), double(config.max_deadline_s));
+        wanted.deadline = exchange.start + std::chrono::milliseconds(std::int64_t(1000 * seconds));
+        wanted.gone = exchange.client_gone;
+        if (wait) response.set_header("Preference-Applied", "wait=" + short_number(seconds));
         const EntityTags tags = parse_entity_tags(joined(header_values(request, "If-None-Match")));
         if (!tags.empty()) wanted.client_has = [&](const std::string& tag) { return tags.has(tag); };
         send_picture(response, service.render(wanted), wanted.anew);

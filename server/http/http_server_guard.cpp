@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include <arpa/inet.h>
+#include <netdb.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -61,6 +62,15 @@ void address_of(int socket, bool peer, std::string& ip, int& port) {
 
 }  // namespace
 
+std::string why_not_bound(const std::string& host, int error) {
+    addrinfo* list = nullptr;
+    if (const int unknown = ::getaddrinfo(host.c_str(), nullptr, nullptr, &list); unknown != 0) {
+        return ::gai_strerror(unknown);
+    }
+    ::freeaddrinfo(list);
+    return error != 0 ? std::strerror(error) : "the address is not of this machine, or the port is taken or not allowed";
+}
+
 // ---- GuardedStream
 
 bool GuardedStream::wait_for_request(const std::function<bool(milliseconds)>& give_up) {
@@ -80,6 +90,12 @@ void GuardedStream::begin(Exchange& exchange) {
     in_header_ = true;
     header_bytes_ = header_lines_ = body_bytes_ = 0;
     line_end_ = 0;
+}
+
+bool GuardedStream::client_gone() const {
+    char byte = 0;
+    const ssize_t count = ::recv(socket_, &byte, 1, MSG_PEEK | MSG_DONTWAIT);
+    return count == 0 || (count < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR);
 }
 
 void GuardedStream::linger() {
@@ -279,6 +295,7 @@ void GuardedServer::serve_connection(GuardedStream& stream) {
     while (stream.wait_for_request(give_up)) {
         fresh = false;
         Exchange exchange;
+        exchange.client_gone = [&stream] { return stream.client_gone(); };
         t_exchange = &exchange;
         stream.begin(exchange);
         const bool go_on = serve_request(stream, exchange, draining_);

@@ -43,7 +43,11 @@ struct Exchange {
     bool expects_body = false;
     bool body_read = false;
     bool close = false;  // end the connection after the answer
+    std::function<bool()> client_gone;
 };
+
+// The library only says that it could not bind: the system's reason, as far as it is known.
+std::string why_not_bound(const std::string& host, int error);
 
 // A socket as cpp-httplib wants it, with the limits. One per connection.
 class GuardedStream final : public httplib::Stream {
@@ -54,6 +58,8 @@ public:
     bool wait_for_request(const std::function<bool(std::chrono::milliseconds idle)>& give_up);
     void begin(Exchange& exchange);
     bool answered() const { return answered_; }
+    // Whether the client has closed its side. One that only says that it has nothing more to say counts as gone.
+    bool client_gone() const;
     // Reads and forgets what the client still sends, so that closing does not destroy the answer.
     void linger();
 

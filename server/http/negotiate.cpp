@@ -141,6 +141,20 @@ bool has_directive(std::string_view list, std::string_view name) {
     return false;
 }
 
+std::optional<double> parse_wait(std::string_view prefer) {
+    for (const std::string& preference : split(prefer, ',')) {
+        std::string value = preference.substr(0, preference.find(';'));
+        if (!value.starts_with("wait=")) continue;
+        value = lower_trimmed(std::string_view(value).substr(5));
+        std::erase(value, '"');
+        const bool number = !value.empty() && value.size() <= 12 && std::count(value.begin(), value.end(), '.') <= 1 &&
+                            value.front() != '.' &&
+                            std::all_of(value.begin(), value.end(), [](char c) { return c == '.' || (c >= '0' && c <= '9'); });
+        if (number) return std::stod(value);
+    }
+    return std::nullopt;
+}
+
 bool is_request_id(std::string_view id) {
     return !id.empty() && id.size() <= 64 && std::all_of(id.begin(), id.end(), is_token_char);
 }

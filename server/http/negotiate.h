@@ -31,6 +31,9 @@ EntityTags parse_entity_tags(std::string_view list);
 // Whether a header of comma-separated directives (Cache-Control) has this one, in any case.
 bool has_directive(std::string_view list, std::string_view name);
 
+// Seconds of `Prefer: wait=SECONDS` (RFC 7240, 4.3; a fraction is taken too), nothing when there is no such wish.
+std::optional<double> parse_wait(std::string_view prefer);
+
 // Whether a client's request id may be used as it is: ^[A-Za-z0-9._-]{1,64}$.
 bool is_request_id(std::string_view id);
 std::string new_request_id();

@@ -19,7 +19,7 @@ struct Row {
     const char* explanation;
 };
 
-constexpr std::array<Row, 16> kRows{{
+constexpr std::array<Row, 19> kRows{{
     {ProblemKind::bad_request, 400, "bad-request", "Malformed request",
      "The request breaks the rules of HTTP or carries something that this endpoint does not take. "
      "`detail` says what."},
@@ -49,6 +49,9 @@ constexpr std::array<Row, 16> kRows{{
     {ProblemKind::not_supported_yet, 422, "not-supported-yet", "The scene asks for what is not built yet",
      "The scene is right, but asks for features of the format that this version does not render. "
      "`errors` names each key. GET /v1/info lists the formats, methods and tone maps there are."},
+    {ProblemKind::scene_refused, 422, "scene-refused", "The scene has ended two renderers",
+     "Rendering this scene has ended two renderers, by a crash or because they hung. It is not tried again until the service "
+     "starts anew. The operator finds the reason in the log."},
     {ProblemKind::headers_too_large, 431, "headers-too-large", "The headers are too large",
      "The header section is limited in bytes and in lines."},
     {ProblemKind::internal, 500, "internal", "The render failed",
@@ -61,6 +64,11 @@ constexpr std::array<Row, 16> kRows{{
      "The renderer is starting, or its self test failed. GET /readyz says which."},
     {ProblemKind::too_many_connections, 503, "too-many-connections", "Too many connections",
      "More connections are open than the service has room for."},
+    {ProblemKind::client_closed, 499, "client-closed", "The client closed its connection",
+     "The connection was closed before the answer, so the render was ended. Nobody reads this but the log."},
+    {ProblemKind::deadline_exceeded, 504, "deadline-exceeded", "The render was not done in time",
+     "The request's deadline came first: the one that the client set (Prefer: wait=SECONDS), or the longest that the operator "
+     "allows (--max-deadline)."},
 }};
 
 const Row& row_of(ProblemKind kind) {
@@ -124,6 +132,11 @@ HttpProblem problem_of(const RenderResponse& response, int retry_after_s) {
         case RenderFailure::not_ready:
             problem = make_problem(ProblemKind::not_ready, "The renderer cannot take work now.");
             problem.headers = {{"Retry-After", std::to_string(retry_after_s)}};
+            break;
+        case RenderFailure::lethal: problem = make_problem(ProblemKind::scene_refused, ""); break;
+        case RenderFailure::gone: problem = make_problem(ProblemKind::client_closed, ""); break;
+        case RenderFailure::timed_out:
+            problem = make_problem(ProblemKind::deadline_exceeded, "The render was not done by the request's deadline.");
             break;
         case RenderFailure::failed:
         case RenderFailure::none:

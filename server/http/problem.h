@@ -30,6 +30,9 @@ enum class ProblemKind {
     queue_full,
     not_ready,
     too_many_connections,
+    scene_refused,
+    client_closed,
+    deadline_exceeded,
 };
 
 struct HttpProblem {

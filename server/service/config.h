@@ -48,6 +48,19 @@ struct Config {
     // Longer than the idle time of common load balancers (60 s), so that they close first.
     int keep_alive_s = 75;
 
+    // Processes that render. -1: one for four processors; 0: none, this process renders itself.
+    int workers = -1;
+    // A worker is replaced when it uses more; 0: no bound.
+    std::size_t worker_memory_mb = 0;
+    // And after so many renders, 0 never: what leaks slowly in a driver never becomes much.
+    std::size_t worker_renders = 10'000;
+    // A worker that says nothing for so long hangs. One dispatch of a dense scene takes seconds, a compiler too.
+    int worker_silence_s = 30;
+    // The most that a request may take from its first byte on; clients may ask for less.
+    int max_deadline_s = 120;
+    // What still renders so long after the first signal is ended.
+    int shutdown_timeout_s = 60;
+
     // Pictures kept to be given again; 0 keeps none. A 512 x 512 PNG has 0.1 to 0.5 MB: some thousand of them.
     std::size_t cache_bytes = 256u << 20;
 

@@ -19,9 +19,18 @@ struct RenderBackend {
     RenderBackend& operator=(const RenderBackend&) = delete;
     virtual ~RenderBackend() = default;
 
-    virtual RenderResult render(const Scene& scene) = 0;  // throws when the world fails
-    virtual std::string self_test() = 0;                  // empty when right
+    // Throws when the world fails; RenderStopped when `stop` said so; BackendLost when nothing more is to be expected of it.
+    virtual RenderResult render(const Scene& scene, const StopCheck& stop) = 0;
+    virtual std::string self_test() = 0;  // empty when right
     virtual const DeviceInfo& device() const = 0;
+    // Asked when there is nothing to do. Empty while all is well, else why another one should take its place.
+    virtual std::string worn_out() { return ""; }
+};
+
+// It ended, or had to be ended, in the middle of its work. A full sentence.
+class BackendLost : public DeviceError {
+public:
+    using DeviceError::DeviceError;
 };
 
 using BackendFactory = std::function<std::unique_ptr<RenderBackend>()>;

@@ -118,6 +118,8 @@ struct RenderService::Flight {
     OutputSettings output;
     std::mutex mutex;
     std::condition_variable changed;
+    int waiting = 1;
+    StopFlag stop = std::make_shared<std::atomic<bool>>(false);
     std::optional<RenderOutcome> outcome;
     bool encoding = false;
     bool done = false;
@@ -136,7 +138,8 @@ RenderService::RenderService(RenderWorker& worker, UnsupportedFeatures unsupport
       parse_slots_(std::ptrdiff_t(std::max<std::size_t>(config.parse_slots, 1))),
       keys_(kKnownTexts),
       cache_(config.cache_bytes),
-      table_id_(digest_of_file(config.tone_lut)) {}
+      table_id_(digest_of_file(config.tone_lut)),
+      lethal_(kKnownTexts) {}
 
 RenderService::~RenderService() = default;
 
@@ -168,10 +171,10 @@ RenderResponse RenderService::render(const RenderRequest& request) {
     const auto parse = [&] {
         // A scene that cannot be rendered now is not worth its parsing.
         if (const auto refusal = worker_.refusal()) {
-            // Unless an equal one is under way: it shares that one's picture, and takes no place.
-            if (key.empty()) key = keys_.find(text_key);
-            if (is_under_way(key)) return true;
-            checked.failure = failure_of(*refusal);
+            // Unless an equal request has made its key known meanwhile: its picture can be shared, which takes no place.
+            const bool known = !key.empty();
+            if (!known) key = keys_.find(text_key);
+            if (known || key.empty()) checked.failure = failure_of(*refusal);
         } else {
             checked = check(request, text_key, key);
         }
@@ -180,6 +183,10 @@ RenderResponse RenderService::render(const RenderRequest& request) {
     if (key.empty() && !parse()) return refused(std::move(checked));
 
     RenderResponse response;
+    if (!lethal_.find(key).empty()) {
+        response.failure = RenderFailure::lethal;
+        return response;
+    }
     response.tag = tag_of(key);
     if (!response.tag.empty() && !request.anew) {
         if (request.client_has && request.client_has(response.tag)) {
@@ -195,87 +202,137 @@ RenderResponse RenderService::render(const RenderRequest& request) {
             return response;
         }
     }
-    if (!checked.scene && !parse()) return refused(std::move(checked));
+    std::shared_ptr<Flight> flight = join(key);
+    if (!flight && !checked.scene && !parse()) {
+        flight = join(key);  // an equal one may have taken the last place just now
+        if (!flight) return refused(std::move(checked));
+    }
+    if (flight) {
+        response.source = Source::shared;
+    } else {
+        flight = begin(key, std::make_shared<const Scene>(std::move(*checked.scene)), response);
+        if (!flight) return response;
+    }
     response.parse_ms = ms_since(start);
-    render_shared(key, checked.scene ? std::make_shared<const Scene>(std::move(*checked.scene)) : nullptr, response);
+    wait_for(request, key, *flight, response);
     return response;
 }
 
-bool RenderService::is_under_way(const std::string& key) {
+std::shared_ptr<RenderService::Flight> RenderService::join(const std::string& key) {
     const std::lock_guard lock(flights_mutex_);
-    return !key.empty() && flights_.contains(key);
+    return join_locked(key);
 }
 
-void RenderService::render_shared(const std::string& key, std::shared_ptr<const Scene> scene, RenderResponse& response) {
-    std::shared_ptr<Flight> flight;
-    {
-        const std::lock_guard lock(flights_mutex_);
-        if (const auto found = flights_.find(key); found != flights_.end()) {
-            flight = found->second;
-            response.source = Source::shared;
-            ++shared_;
-        } else {
-            if (!scene) {  // the one to be shared has ended since
-                response.failure = RenderFailure::queue_full;
-                return;
-            }
-            flight = std::make_shared<Flight>();
-            flight->output = scene->output;
-            const auto refusal = worker_.submit(std::move(scene), [flight](RenderOutcome outcome) {
-                {
-                    const std::lock_guard inner(flight->mutex);
-                    flight->outcome = std::move(outcome);
-                }
-                flight->changed.notify_all();
-            });
-            if (refusal) {
-                response.failure = failure_of(*refusal);
-                return;
-            }
-            flights_.emplace(key, flight);
-            ++misses_;
-        }
+std::shared_ptr<RenderService::Flight> RenderService::join_locked(const std::string& key) {
+    const auto found = flights_.find(key);
+    if (found == flights_.end()) return nullptr;
+    const std::lock_guard inner(found->second->mutex);
+    ++found->second->waiting;
+    ++shared_;
+    return found->second;
+}
+
+// Null: it is refused, as the response says.
+std::shared_ptr<RenderService::Flight> RenderService::begin(const std::string& key, std::shared_ptr<const Scene> scene,
+                                                            RenderResponse& response) {
+    const std::lock_guard lock(flights_mutex_);
+    // Another one may have begun it meanwhile.
+    if (auto flight = join_locked(key)) {
+        response.source = Source::shared;
+        return flight;
     }
-    std::unique_lock lock(flight->mutex);
-    flight->changed.wait(lock, [&] { return flight->done || (flight->outcome && !flight->encoding); });
-    if (!flight->done) {
-        flight->encoding = true;
-        RenderOutcome outcome = std::move(*flight->outcome);
-        lock.unlock();
-        SharedAnswer answer;
-        bool stored = false;
-        std::string error = std::move(outcome.error);
-        try {
-            if (outcome.result) {
-                answer = make_answer(std::move(*outcome.result), flight->output);
-                // Only now is it certain which device it was.
-                if (const std::string tag = tag_of(key); !tag.empty()) stored = cache_.put(tag, answer);
-            }
-        } catch (const std::exception& problem) {
-            error = problem.what();
-        }
+    auto flight = std::make_shared<Flight>();
+    flight->output = scene->output;
+    const auto done = [flight](RenderOutcome outcome) {
         {
-            const std::lock_guard flights_lock(flights_mutex_);
-            flights_.erase(key);
+            const std::lock_guard inner(flight->mutex);
+            flight->outcome = std::move(outcome);
+        }
+        flight->changed.notify_all();
+    };
+    if (const auto refusal = worker_.submit(std::move(scene), done, flight->stop)) {
+        response.failure = failure_of(*refusal);
+        return nullptr;
+    }
+    flights_.emplace(key, flight);
+    ++misses_;
+    return flight;
+}
+
+// How often those who wait look whether they still have reason to.
+constexpr std::chrono::milliseconds kLookUp{50};
+
+void RenderService::wait_for(const RenderRequest& request, const std::string& key, Flight& flight, RenderResponse& response) {
+    std::unique_lock lock(flight.mutex);
+    const auto ready = [&] { return flight.done || (flight.outcome && !flight.encoding); };
+    while (!flight.changed.wait_until(lock, std::min(Clock::now() + kLookUp, request.deadline), ready)) {
+        lock.unlock();
+        response.failure = stopping_                            ? RenderFailure::not_ready
+                           : Clock::now() >= request.deadline   ? RenderFailure::timed_out
+                           : request.gone && request.gone()     ? RenderFailure::gone
+                                                                : RenderFailure::none;
+        if (response.failure != RenderFailure::none) {
+            leave(key, flight);
+            return;
         }
         lock.lock();
-        flight->failure = answer              ? RenderFailure::none
-                          : outcome.not_ready ? RenderFailure::not_ready
-                                              : RenderFailure::failed;
-        flight->error = std::move(error);
-        flight->answer = std::move(answer);
-        flight->queue_ms = outcome.wait_ms;
-        flight->stored = stored;
-        flight->done = true;
-        flight->changed.notify_all();
     }
-    response.failure = flight->failure;
-    response.error = flight->error;
-    response.answer = flight->answer;
-    response.queue_ms = flight->queue_ms;
-    response.stored = flight->stored;
+    if (!flight.done) {
+        flight.encoding = true;
+        RenderOutcome outcome = std::move(*flight.outcome);
+        lock.unlock();
+        finish(key, flight, std::move(outcome));
+        lock.lock();
+    }
+    response.failure = flight.failure;
+    response.error = flight.error;
+    response.answer = flight.answer;
+    response.queue_ms = flight.queue_ms;
+    response.stored = flight.stored;
     lock.unlock();
     if (response.tag.empty()) response.tag = tag_of(key);
+}
+
+// The last one who leaves ends the render; who asks next begins a new one.
+void RenderService::leave(const std::string& key, Flight& flight) {
+    const std::lock_guard flights_lock(flights_mutex_);
+    const std::lock_guard lock(flight.mutex);
+    if (--flight.waiting > 0 || flight.done || flight.encoding) return;
+    *flight.stop = true;
+    if (const auto found = flights_.find(key); found != flights_.end() && found->second.get() == &flight) flights_.erase(found);
+}
+
+void RenderService::finish(const std::string& key, Flight& flight, RenderOutcome outcome) {
+    SharedAnswer answer;
+    bool stored = false;
+    std::string error = std::move(outcome.error);
+    try {
+        if (outcome.result) {
+            answer = make_answer(std::move(*outcome.result), flight.output);
+            // Only now is it certain which device it was.
+            if (const std::string tag = tag_of(key); !tag.empty()) stored = cache_.put(tag, answer);
+        }
+        if (outcome.lethal) lethal_.put(key, "lost");
+    } catch (const std::exception& problem) {
+        error = problem.what();
+    }
+    {
+        const std::lock_guard flights_lock(flights_mutex_);
+        if (const auto found = flights_.find(key); found != flights_.end() && found->second.get() == &flight) flights_.erase(found);
+    }
+    {
+        const std::lock_guard lock(flight.mutex);
+        flight.failure = answer              ? RenderFailure::none
+                         : outcome.lethal    ? RenderFailure::lethal
+                         : outcome.not_ready ? RenderFailure::not_ready
+                                             : RenderFailure::failed;
+        flight.error = std::move(error);
+        flight.answer = std::move(answer);
+        flight.queue_ms = outcome.wait_ms;
+        flight.stored = stored;
+        flight.done = true;
+    }
+    flight.changed.notify_all();
 }
 
 }  // namespace penumbra

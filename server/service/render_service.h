@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -32,6 +33,9 @@ struct RenderRequest {
     // Whether the client says that it has the picture with this tag already; empty: it says nothing.
     std::function<bool(const std::string& tag)> client_has;
     bool anew = false;  // no answer from the cache
+    // Until when it is wanted, and whether it still is: asked some times a second while it waits.
+    std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
+    std::function<bool()> gone;
 };
 
 // Where an answer came from.
@@ -48,7 +52,10 @@ enum class RenderFailure {
     not_supported,  // a right scene that asks for what this build cannot do yet
     queue_full,
     not_ready,
-    failed,  // the world failed: told in the log
+    failed,     // the world failed: told in the log
+    timed_out,  // it was not done by the deadline
+    gone,       // the client did not wait
+    lethal,     // rendering this scene has cost two renderers
 };
 
 struct RenderResponse {
@@ -107,6 +114,9 @@ public:
     };
     CacheFigures cache_figures() const;
 
+    // Ends what is under way: those who wait are refused as if there were no renderer.
+    void stop_all() { stopping_ = true; }
+
     RenderWorker& worker() { return worker_; }
     const SceneLimits& limits() const { return limits_; }
     const UnsupportedFeatures& unsupported() const { return unsupported_; }
@@ -116,9 +126,13 @@ private:
 
     // Parses and checks; the scene's key goes to `key`.
     CheckedScene check(const RenderRequest& request, const std::string& text_key, std::string& key);
-    bool is_under_way(const std::string& key);
-    // Joins the render of this scene that is under way, or begins one. Without a scene it only joins, or finds the queue full.
-    void render_shared(const std::string& key, std::shared_ptr<const Scene> scene, RenderResponse& response);
+    // The render of this scene that is under way; null when there is none.
+    std::shared_ptr<Flight> join(const std::string& key);
+    std::shared_ptr<Flight> join_locked(const std::string& key);
+    std::shared_ptr<Flight> begin(const std::string& key, std::shared_ptr<const Scene> scene, RenderResponse& response);
+    void wait_for(const RenderRequest& request, const std::string& key, Flight& flight, RenderResponse& response);
+    void finish(const std::string& key, Flight& flight, RenderOutcome outcome);
+    void leave(const std::string& key, Flight& flight);
     std::string tag_of(const std::string& key) const;
 
     RenderWorker& worker_;
@@ -128,6 +142,8 @@ private:
     TextMemo keys_;  // of right scenes, by their text
     AnswerCache cache_;
     std::string table_id_;  // of the tone map "tony"
+    TextMemo lethal_;  // keys of scenes that have cost two renderers
+    std::atomic<bool> stopping_{false};
     std::mutex flights_mutex_;
     std::unordered_map<std::string, std::shared_ptr<Flight>> flights_;  // by the scene's key
     std::atomic<std::uint64_t> hits_{0}, misses_{0}, shared_{0}, not_modified_{0};

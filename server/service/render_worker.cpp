@@ -10,17 +10,27 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// How often an idle thread looks after its backend.
+constexpr std::chrono::milliseconds kLookUp{250};
+// Between two attempts to make a backend that could not be made: it doubles up to the second.
+constexpr std::chrono::milliseconds kFirstPause{500}, kLongestPause{30'000};
+// A render that has cost so many backends is not tried again.
+constexpr int kMostLosses = 2;
+
 double ms_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
 }  // namespace
 
-RenderWorker::RenderWorker(BackendFactory factory, std::size_t queue_capacity, const Log& log, std::vector<WarmUpScene> warm_up)
-    : log_(log), capacity_(std::max<std::size_t>(queue_capacity, 1)), warm_up_(std::move(warm_up)) {
-    status_.reason = "The renderer is starting.";
-    status_.capacity = capacity_;
-    thread_ = std::thread([this, make = std::move(factory)] { run(make); });
+RenderWorker::RenderWorker(BackendFactory factory, std::size_t queue_capacity, const Log& log, std::vector<WarmUpScene> warm_up,
+                           std::size_t workers)
+    : factory_(std::move(factory)),
+      log_(log),
+      capacity_(std::max<std::size_t>(queue_capacity, 1)),
+      warm_up_(std::move(warm_up)) {
+    for (std::size_t i = 0; i < std::max<std::size_t>(workers, 1); ++i) slots_.push_back(std::make_unique<Slot>());
+    for (const auto& slot : slots_) threads_.emplace_back([this, one = slot.get()] { run(*one); });
 }
 
 RenderWorker::~RenderWorker() {
@@ -29,11 +39,40 @@ RenderWorker::~RenderWorker() {
         stopping_ = true;
     }
     changed_.notify_all();
-    thread_.join();
+    for (std::thread& thread : threads_) thread.join();
+}
+
+// ---- asked from outside
+
+RenderWorker::Status RenderWorker::status_locked() const {
+    Status status = counts_;
+    status.workers = slots_.size();
+    status.capacity = capacity_;
+    status.waiting = queue_.size();
+    // The best that there is; but before all have started, one that is ready would have to do the work of all.
+    const Slot* best = nullptr;
+    for (const auto& slot : slots_) {
+        status.ready_workers += slot->state == State::ready ? 1 : 0;
+        const auto rank = [](State state) {
+            return state == State::ready ? 0 : state == State::starting ? 1 : state == State::failing ? 2 : 3;
+        };
+        if (!best || rank(slot->state) < rank(best->state)) best = slot.get();
+    }
+    status.state = started_ ? best->state : State::starting;
+    status.reason = status.state == State::ready      ? ""
+                    : status.state == State::starting ? "The renderer is starting."
+                                                      : best->reason;
+    return status;
+}
+
+RenderWorker::Status RenderWorker::status() const {
+    const std::lock_guard lock(mutex_);
+    return status_locked();
 }
 
 std::optional<RenderWorker::Refusal> RenderWorker::refusal_locked() const {
-    if (status_.state == State::failing || status_.state == State::broken) return Refusal::not_ready;
+    const State state = status_locked().state;
+    if (state == State::failing || state == State::broken) return Refusal::not_ready;
     if (queue_.size() >= capacity_) return Refusal::queue_full;
     return std::nullopt;
 }
@@ -51,163 +90,250 @@ RenderWorker::Ticket RenderWorker::submit(std::shared_ptr<const Scene> scene) {
     return ticket;
 }
 
-std::optional<RenderWorker::Refusal> RenderWorker::submit(std::shared_ptr<const Scene> scene, Done done) {
+std::optional<RenderWorker::Refusal> RenderWorker::submit(std::shared_ptr<const Scene> scene, Done done, StopFlag stop) {
     {
         const std::lock_guard lock(mutex_);
         if (const auto refusal = refusal_locked()) return refusal;
-        queue_.push_back({std::move(scene), std::move(done), Clock::now()});
+        queue_.push_back({std::move(scene), std::move(done), std::move(stop), Clock::now()});
     }
     changed_.notify_all();
     return std::nullopt;
 }
 
-RenderWorker::Status RenderWorker::status() const {
-    const std::lock_guard lock(mutex_);
-    Status status = status_;
-    status.waiting = queue_.size();
-    return status;
-}
-
 int RenderWorker::retry_after_s() const {
     const std::lock_guard lock(mutex_);
     // One more than waits: the render that runs is on average half done, a whole one is the safe guess.
-    const double seconds = status_.render_ms * double(queue_.size() + 1) / 1000;
+    const Status status = status_locked();
+    const double at_once = double(std::max<std::size_t>(status.ready_workers, 1));
+    const double seconds = status.render_ms * double(queue_.size() + 1) / at_once / 1000;
     return int(std::clamp(std::ceil(seconds), 1.0, 3600.0));
 }
 
 RenderWorker::State RenderWorker::wait_until_started() const {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return status_.state != State::starting; });
-    return status_.state;
+    changed_.wait(lock, [&] { return status_locked().state != State::starting; });
+    return status_locked().state;
 }
 
-void RenderWorker::set_state(State state, std::string reason) {
+// ---- a thread and its backend
+
+void RenderWorker::set_state(Slot& slot, State state, std::string reason) {
     {
         const std::lock_guard lock(mutex_);
-        status_.state = state;
-        status_.reason = std::move(reason);
+        slot.state = state;
+        slot.reason = std::move(reason);
+        slot.was_ready = slot.was_ready || state == State::ready;
+        started_ = started_ || std::none_of(slots_.begin(), slots_.end(),
+                                            [](const auto& one) { return one->state == State::starting; });
     }
     changed_.notify_all();
 }
 
-bool RenderWorker::make_backend(const BackendFactory& factory) {
-    backend_.reset();  // the old context goes before a new one comes
+RenderWorker::State RenderWorker::state_of(const Slot& slot) const {
+    const std::lock_guard lock(mutex_);
+    return slot.state;
+}
+
+void RenderWorker::count_loss(const std::string& why) {
+    const std::lock_guard lock(mutex_);
+    ++counts_.lost;
+    counts_.last_loss = why;
+}
+
+bool RenderWorker::make_backend(Slot& slot) {
+    slot.backend.reset();  // the old context goes before a new one comes
+    std::string why = "The renderer could not start.";
     try {
-        backend_ = factory();
+        slot.backend = factory_();
         const std::lock_guard lock(mutex_);
-        status_.device = backend_->device();
+        counts_.device = slot.backend->device();
         return true;
     } catch (const std::exception& error) {
-        log_.error("The renderer could not start", {{"error", std::string(error.what())}});
-        set_state(State::broken, error.what());
+        why = error.what();
     } catch (...) {
-        log_.error("The renderer could not start", {{"error", std::string("unknown exception")}});
-        set_state(State::broken, "The renderer could not start.");
     }
+    log_.error("The renderer could not start", {{"error", why}});
+    // One that has worked before is tried again; one that never did says that the machine has none.
+    set_state(slot, slot.was_ready ? State::failing : State::broken, why);
     return false;
 }
 
-void RenderWorker::test_backend(State when_right) {
+void RenderWorker::test_backend(Slot& slot, State when_right) {
     std::string wrong;
     try {
-        wrong = backend_->self_test();
+        wrong = slot.backend->self_test();
     } catch (const std::exception& error) {
         wrong = error.what();
     } catch (...) {
         wrong = "The self test ended with an unknown exception.";
     }
     if (wrong.empty()) {
-        set_state(when_right, when_right == State::ready ? "" : "The renderer is starting.");
+        set_state(slot, when_right, "The renderer is starting.");
     } else {
         log_.error("The self test failed", {{"error", wrong}});
-        set_state(State::failing, wrong);
+        set_state(slot, State::failing, wrong);
     }
 }
 
 // One scene of the warm-up; after the last it is ready.
-void RenderWorker::warm_up_next() {
+void RenderWorker::warm_up_next(Slot& slot) {
     const Clock::time_point start = Clock::now();
-    if (warmed_ < warm_up_.size()) {
-        const WarmUpScene& item = warm_up_[warmed_++];
-        try {
-            backend_->render(item.scene);
-        } catch (const std::exception& error) {
+    if (slot.warmed < warm_up_.size()) {
+        const WarmUpScene& item = warm_up_[slot.warmed++];
+        const auto failed = [&](const char* why) {
             // Such a scene will fail when a client sends it; others need not.
-            log_.warning("A scene of the warm-up failed", {{"scene", item.name}, {"error", std::string(error.what())}});
+            log_.warning("A scene of the warm-up failed", {{"scene", item.name}, {"error", std::string(why)}});
+        };
+        try {
+            slot.backend->render(item.scene, {});
+        } catch (const BackendLost& error) {
+            failed(error.what());
+            count_loss(error.what());
+            replace(slot);
+            return;
+        } catch (const std::exception& error) {
+            failed(error.what());
         }
-        warm_up_ms_ += ms_since(start);
+        slot.warm_up_ms += ms_since(start);
     }
-    if (warmed_ < warm_up_.size()) return;
-    if (!warm_up_.empty()) log_.info("warm", {{"scenes", std::int64_t(warmed_)}, {"ms", warm_up_ms_}});
-    set_state(State::ready, "");
+    if (slot.warmed < warm_up_.size()) return;
+    if (!warm_up_.empty()) log_.info("warm", {{"scenes", std::int64_t(slot.warmed)}, {"ms", slot.warm_up_ms}});
+    set_state(slot, State::ready, "");
+}
+
+// Another backend instead of one that is lost or worn out. It is as ready as that was: what it compiles lies in the driver's cache.
+void RenderWorker::replace(Slot& slot) {
+    {
+        const std::lock_guard lock(mutex_);
+        ++counts_.replaced;
+    }
+    const State wanted = slot.was_ready || slot.warmed >= warm_up_.size() ? State::ready : State::starting;
+    const Clock::time_point start = Clock::now();
+    if (!make_backend(slot)) return;
+    test_backend(slot, wanted);
+    if (state_of(slot) == wanted) log_.info("A new renderer has started", {{"ms", ms_since(start)}});
 }
 
 // After an exception the context may be lost. A wrong test is answered with a fresh one, once.
-void RenderWorker::recover(const BackendFactory& factory) {
-    test_backend();
-    if (status().state == State::ready) return;
+void RenderWorker::recover(Slot& slot) {
+    const State before = state_of(slot);
+    test_backend(slot, before);
+    if (state_of(slot) == before) return;
     log_.warning("Making a new context");
-    if (make_backend(factory)) test_backend();
+    replace(slot);
 }
 
-RenderOutcome RenderWorker::render(const Scene& scene, const BackendFactory& factory) {
+void RenderWorker::work(Slot& slot, Job job) {
     RenderOutcome outcome;
+    outcome.wait_ms = job.wait_ms;
     const Clock::time_point start = Clock::now();
+    bool lost = false;
     try {
-        outcome.result = backend_->render(scene);
+        outcome.result = slot.backend->render(*job.scene, [&] { return job.stop && *job.stop; });
+    } catch (const RenderStopped&) {
+        outcome.stopped = true;
+    } catch (const BackendLost& error) {
+        lost = true;
+        outcome.error = error.what();
     } catch (const std::exception& error) {
         outcome.error = error.what();
     } catch (...) {
         outcome.error = "unknown exception";
     }
-    if (!outcome.result) {
-        if (outcome.error.empty()) outcome.error = "exception without a text";
-        recover(factory);
-        return outcome;
+    if (lost) {
+        count_loss(outcome.error);
+        log_.error("A renderer was lost", {{"error", outcome.error}, {"times", std::int64_t(job.losses + 1)}});
+        set_state(slot, State::starting, "The renderer is starting again.");
+        if (++job.losses < kMostLosses) {
+            {
+                const std::lock_guard lock(mutex_);
+                --counts_.running;
+                job.since = Clock::now();
+                queue_.push_front(std::move(job));
+            }
+            changed_.notify_all();
+            replace(slot);
+            return;
+        }
+        outcome.lethal = true;
     }
     const double ms = ms_since(start);
-    const std::lock_guard lock(mutex_);
-    // The weight of 1/8 forgets a burst of small scenes after some ten large ones.
-    status_.render_ms = status_.rendered == 0 ? ms : status_.render_ms + (ms - status_.render_ms) / 8;
-    ++status_.rendered;
-    return outcome;
-}
-
-void RenderWorker::run(const BackendFactory& factory) {
-    if (make_backend(factory)) test_backend(State::starting);
-    bool warming = status().state == State::starting;  // the self test was right
-    for (;;) {
-        Job job;
-        bool usable = warming;
-        {
-            std::unique_lock lock(mutex_);
-            changed_.wait(lock, [&] { return stopping_ || warming || !queue_.empty(); });
-            if (queue_.empty() && stopping_) break;
-            if (!queue_.empty()) {
-                job = std::move(queue_.front());
-                queue_.pop_front();
-            }
-            usable = usable || status_.state == State::ready;
-        }
-        if (job.scene) {
-            const double wait_ms = ms_since(job.since);
-            RenderOutcome outcome;
-            if (usable) {
-                outcome = render(*job.scene, factory);
-            } else {
-                outcome.not_ready = true;
-                outcome.error = "the renderer is not ready: " + status().reason;
-            }
-            outcome.wait_ms = wait_ms;
-            job.done(std::move(outcome));
-        }
-        // Whoever cannot wait until it is ready waits for one scene of the warm-up, not for all.
-        if (warming) {
-            if (status().state == State::starting) warm_up_next();
-            warming = status().state == State::starting;
+    const bool failed = !outcome.result && !outcome.stopped && !lost;
+    if (failed && outcome.error.empty()) outcome.error = "exception without a text";
+    if (failed) recover(slot);  // before the answer: who asks next finds the state that it left
+    {
+        const std::lock_guard lock(mutex_);
+        --counts_.running;
+        if (outcome.result) {
+            // The weight of 1/8 forgets a burst of small scenes after some ten large ones.
+            counts_.render_ms = counts_.rendered == 0 ? ms : counts_.render_ms + (ms - counts_.render_ms) / 8;
+            ++counts_.rendered;
         }
     }
-    backend_.reset();
+    job.done(std::move(outcome));
+    if (lost) replace(slot);
+}
+
+// Nothing: there is other work, or it is time to end.
+std::optional<RenderWorker::Job> RenderWorker::next_job(Slot& slot) {
+    std::unique_lock lock(mutex_);
+    const bool warming = slot.state == State::starting && slot.backend;
+    // Where no slot works, each throws out what is queued; where another does, this one leaves it to that.
+    const auto mine = [&] {
+        return !queue_.empty() && (slot.state == State::ready || warming || refusal_locked() == Refusal::not_ready);
+    };
+    changed_.wait_for(lock, std::max(kLookUp, slot.pause), [&] { return stopping_ || warming || mine(); });
+    if (!mine()) return std::nullopt;
+    Job job = std::move(queue_.front());
+    queue_.pop_front();
+    job.wait_ms += ms_since(job.since);
+    ++counts_.running;
+    return job;
+}
+
+void RenderWorker::run(Slot& slot) {
+    if (make_backend(slot)) {
+        test_backend(slot, State::starting);
+        if (warm_up_.empty() && state_of(slot) == State::starting) set_state(slot, State::ready, "");
+    }
+    for (;;) {
+        std::optional<Job> job = next_job(slot);
+        {
+            const std::lock_guard lock(mutex_);
+            if (!job && stopping_ && queue_.empty()) break;
+        }
+        if (job) {
+            const State state = state_of(slot);
+            RenderOutcome outcome;
+            outcome.wait_ms = job->wait_ms;
+            outcome.stopped = job->stop && *job->stop;
+            outcome.not_ready = state == State::failing || state == State::broken;
+            if (outcome.stopped || outcome.not_ready) {
+                if (outcome.not_ready) outcome.error = "the renderer is not ready: " + status().reason;
+                {
+                    const std::lock_guard lock(mutex_);
+                    --counts_.running;
+                }
+                job->done(std::move(outcome));
+            } else {
+                work(slot, std::move(*job));
+            }
+        }
+        const State state = state_of(slot);
+        if (state == State::starting && slot.backend) {
+            // Whoever cannot wait until it is ready waits for one scene of the warm-up, not for all.
+            warm_up_next(slot);
+        } else if (!slot.backend && !job) {
+            replace(slot);
+            slot.pause = slot.backend ? std::chrono::milliseconds(0) : std::clamp(2 * slot.pause, kFirstPause, kLongestPause);
+        } else if (state == State::ready && slot.backend) {
+            if (const std::string why = slot.backend->worn_out(); !why.empty()) {
+                log_.warning("A renderer is replaced", {{"why", why}});
+                replace(slot);
+            }
+        }
+    }
+    slot.backend.reset();
 }
 
 }  // namespace penumbra

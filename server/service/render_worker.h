@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// One thread that owns the one backend (a GL context belongs to a thread), behind one bounded queue.
+// One bounded queue of renders, and the threads that take from it. Each owns one backend: a GL context belongs to a thread. A
+// backend that is lost, wrong or worn out is replaced by a new one.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -23,16 +25,21 @@ namespace penumbra {
 
 struct RenderOutcome {
     std::optional<RenderResult> result;
-    std::string error;   // for the log, never for a client; empty with a result
+    std::string error;       // for the log, never for a client; empty with a result
     bool not_ready = false;  // it was not tried: there is no renderer that works
+    bool stopped = false;    // nobody wanted it any more
+    bool lethal = false;     // two backends were lost over it
     double wait_ms = 0;      // in the queue
 };
+
+// Shared by those who want a render and those who make it.
+using StopFlag = std::shared_ptr<std::atomic<bool>>;
 
 class RenderWorker {
 public:
     enum class State {
-        starting,  // making the context and testing it
-        ready,
+        starting,  // making the first backends and testing them
+        ready,     // there is one that works
         failing,   // the self test gave a wrong picture
         broken,    // there is no backend: it could not be made
     };
@@ -40,15 +47,21 @@ public:
         State state = State::starting;
         std::string reason;  // a sentence unless ready
         DeviceInfo device;   // empty while there is none
-        std::size_t waiting = 0;
+        std::size_t workers = 0;        // threads with a backend each
+        std::size_t ready_workers = 0;  // of them, those that take work now
+        std::size_t waiting = 0, running = 0;
         std::size_t capacity = 0;
         std::uint64_t rendered = 0;
-        double render_ms = 0;  // moving average, 0 before the first render
+        std::uint64_t lost = 0;      // backends that ended in the middle of their work, or while idle
+        std::uint64_t replaced = 0;  // backends that were made after the first ones
+        std::string last_loss;       // why, "" when there was none
+        double render_ms = 0;        // moving average, 0 before the first render
     };
     enum class Refusal { queue_full, not_ready };
 
     // Renders `warm_up` before it is ready; requests that come meanwhile go before the rest of it.
-    RenderWorker(BackendFactory factory, std::size_t queue_capacity, const Log& log, std::vector<WarmUpScene> warm_up = {});
+    RenderWorker(BackendFactory factory, std::size_t queue_capacity, const Log& log, std::vector<WarmUpScene> warm_up = {},
+                 std::size_t workers = 1);
     // Finishes what is queued.
     ~RenderWorker();
     RenderWorker(const RenderWorker&) = delete;
@@ -60,9 +73,10 @@ public:
     };
     // Never waits. The scene has passed validation.
     Ticket submit(std::shared_ptr<const Scene> scene);
-    // The same; `done` is called on the worker's thread, once, unless it is refused. It must not take long.
+    // The same; `done` is called on a worker's thread, once, unless it is refused. It must not take long. Once `stop` is
+    // set, the render ends soon, or is not begun.
     using Done = std::function<void(RenderOutcome)>;
-    std::optional<Refusal> submit(std::shared_ptr<const Scene> scene, Done done);
+    std::optional<Refusal> submit(std::shared_ptr<const Scene> scene, Done done, StopFlag stop = nullptr);
 
     // Whether submit() would refuse now: asked before the work of parsing a scene.
     std::optional<Refusal> refusal() const;
@@ -79,34 +93,49 @@ private:
     struct Job {
         std::shared_ptr<const Scene> scene;
         Done done;
+        StopFlag stop;
         std::chrono::steady_clock::time_point since;
+        int losses = 0;
+        double wait_ms = 0;
+    };
+    // One thread and its backend. Its state is read and written under the mutex, the rest by its thread alone.
+    struct Slot {
+        State state = State::starting;
+        std::string reason = "The renderer is starting.";
+        bool was_ready = false;
+        std::unique_ptr<RenderBackend> backend;
+        std::size_t warmed = 0;  // scenes of the warm-up
+        double warm_up_ms = 0;
+        std::chrono::milliseconds pause{0};  // before another one is made
     };
 
-    void run(const BackendFactory& factory);
-    bool make_backend(const BackendFactory& factory);  // false: there is none
-    void test_backend(State when_right = State::ready);
-    void warm_up_next();
-    RenderOutcome render(const Scene& scene, const BackendFactory& factory);
-    void recover(const BackendFactory& factory);
-    void set_state(State state, std::string reason);
+    void run(Slot& slot);
+    std::optional<Job> next_job(Slot& slot);
+    void work(Slot& slot, Job job);
+    bool make_backend(Slot& slot);  // false: there is none
+    void test_backend(Slot& slot, State when_right);
+    void warm_up_next(Slot& slot);
+    void recover(Slot& slot);
+    void replace(Slot& slot);
+    void count_loss(const std::string& why);
+    void set_state(Slot& slot, State state, std::string reason);
+    State state_of(const Slot& slot) const;
+    Status status_locked() const;
     std::optional<Refusal> refusal_locked() const;
 
+    const BackendFactory factory_;
     const Log& log_;
     const std::size_t capacity_;
+    const std::vector<WarmUpScene> warm_up_;
 
     mutable std::mutex mutex_;
     mutable std::condition_variable changed_;
     std::deque<Job> queue_;
     bool stopping_ = false;
-    Status status_;
-
-    // Touched by the thread alone:
-    const std::vector<WarmUpScene> warm_up_;
-    std::size_t warmed_ = 0;  // how many of them
-    double warm_up_ms_ = 0;
-    std::unique_ptr<RenderBackend> backend_;
-
-    std::thread thread_;                      // last: it uses all above
+    bool started_ = false;  // every slot has ended its start
+    Status counts_;         // the members that count; the others are worked out
+    std::vector<std::unique_ptr<Slot>> slots_;
+    std::vector<std::thread> threads_;  // last: they use all above
 };
 
 }  // namespace penumbra

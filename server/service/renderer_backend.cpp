@@ -9,7 +9,7 @@ class RendererBackend final : public RenderBackend {
 public:
     explicit RendererBackend(const RendererOptions& options) : renderer_(options) {}
 
-    RenderResult render(const Scene& scene) override { return renderer_.render(scene); }
+    RenderResult render(const Scene& scene, const StopCheck& stop) override { return renderer_.render(scene, stop); }
     std::string self_test() override { return renderer_.self_test(); }
     const DeviceInfo& device() const override { return renderer_.device(); }
 

@@ -204,10 +204,15 @@ TEST(Sharing, EqualRequestsUnderWayAreRenderedOnce) {
     config.queue_capacity = 1;  // those that share take no place
     const Started service(config);
     service.control->close_gate();
-    Crowd crowd(service, 12, kScene);
+    Crowd first(service, 1, kScene);
+    service.control->wait_for_begun(1);
+    auto other = std::async(std::launch::async, [&] { return service.post(scene_number(1))->status; });
+    while (service.worker->status().waiting < 1) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    Crowd crowd(service, 11, kScene);  // the queue is full
     wait_for_shared(service, 11);
-    EXPECT_EQ(service.worker->status().waiting, 0u);
     service.control->open_gate();
+    EXPECT_EQ(other.get(), 200);
+    crowd.answers.push_back(std::move(first.answers[0]));
     std::multiset<std::string> statuses;
     std::set<std::string> bodies;
     for (auto& answer : crowd.answers) {
@@ -218,7 +223,7 @@ TEST(Sharing, EqualRequestsUnderWayAreRenderedOnce) {
         statuses.insert(result->get_header_value("Cache-Status"));
         bodies.insert(result->body);
     }
-    EXPECT_EQ(service.control->begun(), 1);
+    EXPECT_EQ(service.control->begun(), 2) << "one for these, and the other";
     EXPECT_EQ(bodies.size(), 1u);
     EXPECT_EQ(statuses.count("penumbra; fwd=miss; stored"), 1u);
     EXPECT_EQ(statuses.count("penumbra; fwd=miss; stored; collapsed"), 11u);

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "fake_engine.h"
 
+#include <chrono>
+#include <csignal>
+#include <thread>
+
 namespace penumbra::test {
 
 void FakeControl::close_gate() {
@@ -46,11 +50,19 @@ void FakeControl::on_start() {
     changed_.wait(lock, [&] { return start_open_; });
     if (!start_error_.empty()) throw DeviceError(start_error_);
 }
-void FakeControl::on_render() {
+void FakeControl::on_render(const StopCheck& stop) {
     std::unique_lock lock(mutex_);
     ++begun_;
     changed_.notify_all();
-    changed_.wait(lock, [&] { return gate_open_; });
+    while (!changed_.wait_for(lock, std::chrono::milliseconds(5), [&] { return gate_open_; })) {
+        if (!stop || !stop()) continue;
+        ++stopped_;
+        throw RenderStopped();
+    }
+}
+int FakeControl::stopped() const {
+    const std::lock_guard lock(mutex_);
+    return stopped_;
 }
 std::string FakeControl::self_test() const {
     const std::lock_guard lock(mutex_);
@@ -69,9 +81,16 @@ public:
         device_.max_texture_side = 16384;
     }
 
-    RenderResult render(const Scene& scene) override {
-        control_->on_render();
-        if (scene.sky.radiance.x == 13) throw DeviceError(kThrownSecret);
+    RenderResult render(const Scene& scene, const StopCheck& stop) override {
+        control_->on_render(stop);
+        const double red = scene.sky.radiance.x;
+        if (red == 13) throw DeviceError(kThrownSecret);
+        if (red == 14) std::raise(SIGSEGV);
+        while (red == 15) std::this_thread::sleep_for(std::chrono::seconds(1));
+        for (int i = 0; red >= 100 && i < 2 * (red - 100); ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            if (stop && stop()) throw RenderStopped();
+        }
         RenderResult result;
         const int width = scene.canvas.width, height = scene.canvas.height;
         if (scene.output.format != "png") {

@@ -19,6 +19,7 @@ public:
     // Waits until `count` renders have begun since the start.
     void wait_for_begun(int count);
     int begun() const;
+    int stopped() const;  // renders that were ended before their end
 
     void set_self_test(std::string sentence);   // empty: passes
     void set_start_error(std::string sentence);  // empty: starts
@@ -27,18 +28,19 @@ public:
 
     // For the backend.
     void on_start();
-    void on_render();
+    void on_render(const StopCheck& stop);
     std::string self_test() const;
 
 private:
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     bool gate_open_ = true, start_open_ = true;
-    int begun_ = 0;
+    int begun_ = 0, stopped_ = 0;
     std::string self_test_, start_error_;
 };
 
-// A scene whose sky is (13, 0, 0) makes the render throw; a tone map other than "none" and a format that
+// The sky's red says what the render does: 13 throws; 14 ends the process by a signal; 15 hangs and hears nothing; 100 + n takes
+// n hundredths of a second. A tone map other than "none" and a format that
 // is neither png nor pfm are not supported. The picture is a ramp of the scene's size.
 Engine fake_engine(std::shared_ptr<FakeControl> control);
 

@@ -114,6 +114,22 @@ std::string TemporaryFolder::write(const std::string& name, const std::string& t
     return path(name);
 }
 
+std::vector<pid_t> children_of(pid_t parent) {
+    std::vector<pid_t> children;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+        const std::string name = entry.path().filename();
+        if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+        const std::string stat = read_file(entry.path() / "stat");
+        const std::size_t end = stat.rfind(')');
+        if (end == std::string::npos) continue;
+        char state = 0;
+        int of = 0;
+        std::istringstream(stat.substr(end + 1)) >> state >> of;
+        if (of == parent && state != 'Z' && state != 'X') children.push_back(std::stoi(name));
+    }
+    return children;
+}
+
 int wait_for_port(const std::string& port_file) {
     for (int i = 0; i < 1000; ++i) {
         const std::string text = read_file(port_file);

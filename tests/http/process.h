@@ -30,6 +30,7 @@ public:
     Running& operator=(const Running&) = delete;
 
     void signal(int number) const;
+    pid_t pid() const { return pid_; }
     int wait();  // exit code
     std::string err() const;
 
@@ -51,6 +52,9 @@ public:
 private:
     std::string path_;
 };
+
+// The processes whose parent this is, without those that have ended.
+std::vector<pid_t> children_of(pid_t parent);
 
 std::string read_file(const std::string& path);  // "" when there is none
 // The port that `serve --port-file` wrote, waiting for it; 0 when it does not come.

@@ -44,6 +44,10 @@ TEST(NormalForm, EveryValueShows) {
     std::map<std::string, std::string> seen{{form(base), "base"}};
     const auto differs = [&](const std::string& pointer, const std::string& value) {
         const std::string changed = form(base, {{pointer, value}});
+        const auto read = read_normal_form(changed);
+        ASSERT_TRUE(read) << pointer;
+        EXPECT_EQ(normal_form(*read), changed) << pointer;
+        EXPECT_TRUE(validate(*read).empty()) << pointer;
         const auto [place, fresh] = seen.emplace(changed, pointer);
         EXPECT_TRUE(fresh) << pointer << " gives the same as " << place->second;
     };
