@@ -8,6 +8,7 @@
 #include <thread>
 #include <type_traits>
 
+#include "core/error_view.h"
 #include "core/film/exposure.h"
 #include "core/gl/checkpoint.h"
 #include "core/gl/context.h"
@@ -20,6 +21,7 @@
 #include "core/passes/delta_pass.h"
 #include "core/passes/distance_pass.h"
 #include "core/passes/exact_pass.h"
+#include "core/passes/frame_look.h"
 #include "core/passes/hrc_pass.h"
 #include "core/passes/jump_flood_pass.h"
 #include "core/passes/rc_fix_pass.h"
@@ -92,7 +94,7 @@ struct Renderer::Impl {
     Pixels constant_picture(const Plan& plan, const Scene& scene, GLenum format, Recorder& record);
     Image8 draw_view(const Plan& plan, const Scene& scene, const DistanceField& field, const ShapeLists& lists);
     double exposure_of(const Plan& plan, const Scene& scene, const FrameLight& light, Recorder& record);
-    gl::Texture2D render_hrc(const Plan& plan, const DistanceField& field, Recorder& record);
+    gl::Texture2D render_hrc(const Plan& plan, const DistanceField& field, FrameLook& look, Recorder& record);
     void check_thread() const {
         if (std::this_thread::get_id() != thread)
             throw DeviceError("The renderer was used on another thread than the one that made it.");
@@ -122,7 +124,7 @@ struct Renderer::Impl {
 };
 
 // ---- hrc: one quadrant after another; its ray pieces are kept from the shortest up, then merged from the longest down.
-gl::Texture2D Renderer::Impl::render_hrc(const Plan& plan, const DistanceField& field, Recorder& record) {
+gl::Texture2D Renderer::Impl::render_hrc(const Plan& plan, const DistanceField& field, FrameLook& look, Recorder& record) {
     constexpr const char* kNames[] = {"right", "down", "left", "up"};
     gl::Texture2D sum;
     if (!plan.hrc.aligned())
@@ -145,6 +147,7 @@ gl::Texture2D Renderer::Impl::render_hrc(const Plan& plan, const DistanceField& 
             });
             settings.give(std::move(fluence));
             fluence = std::move(merged);
+            look.see_level(plan, q, n, fluence);
         }
         record.pass(side + " gather", plan.hrc.points, [&] { return hrc.gather(plan, q, fluence, settings, sum); });
         settings.give(std::move(fluence));
@@ -285,7 +288,7 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     if (!plan.closed_tiles.empty())
         record.pass("closed", {glsl::kExactTile * glsl::kExactTile, static_cast<int>(plan.closed_tiles.size())}, [&] { return closed.run(plan, settings, field); });
 
-    if (scene.render.view != "final") {
+    if (plan.look.at == LookAt::field) {
         record.host("view", plan.shown.size, [&] { result.picture = draw_view(plan, scene, field, lists); });
         context.check_reset();
         settings.give(std::move(field.distance));
@@ -304,6 +307,7 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         lost_rays.write(0, &none, sizeof(none));
         lost_rays.bind_storage(glsl::kLostRaysStorage);
     }
+    FrameLook look(plan);
     gl::Texture2D radiance;
     for (std::size_t level = plan.cascades.size(); level-- > 0;) {
         gl::Texture2D merged;
@@ -314,14 +318,28 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         });
         settings.give(std::move(radiance));
         radiance = std::move(merged);
+        look.see_cascade(plan, level, radiance);
+        if (look.seen_all()) break;
     }
     if (plan.reference.rays > 0)
         record.pass("reference", plan.lit.size,
                     [&] { return reference.run(plan, scene.sky, buffers, field, settings, radiance); });
-    if (plan.exact.used)
+    if (plan.exact.used) {
+        ExactPass::SeeCells see_cells;
+        if (plan.look.at == LookAt::skipped) see_cells = [&](const gl::Texture2D& cells, int row, int rows) { look.see_cells(cells, row, rows); };
         exact.run(plan, scene.sky, field, settings, delta,
-                  [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, radiance);
-    if (plan.hrc.active()) radiance = render_hrc(plan, field, record);
+                  [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, radiance, see_cells);
+    }
+    if (plan.hrc.active()) radiance = render_hrc(plan, field, look, record);
+    if (plan.look.at != LookAt::picture) {
+        record.host("view", plan.shown.size, [&] { result.picture = look.draw(plan); });
+        context.check_reset();
+        for (gl::Texture2D* texture : {&field.distance, &field.material, &radiance}) settings.give(std::move(*texture));
+        stats.passes = record.finish();
+        stats.gpu_bytes = plan.gpu_bytes + buffers.bytes() + surfaces.bytes();
+        stats.total_ms = ms_since(start);
+        return result;
+    }
     if (plan.resolve)
         record.pass("resolve", plan.lit.size, [&] {
             gl::Texture2D resolved;
@@ -396,6 +414,19 @@ Renderer::~Renderer() {
 const DeviceInfo& Renderer::device() const { return impl_->info; }
 
 RenderResult Renderer::render(const Scene& given, const StopCheck& stop) {
+    const Look look = look_of(given.render.view);
+    if (look.at == LookAt::contribution) {
+        RenderResult result = render(contribution(given), stop);
+        if (auto* picture = std::get_if<Image8>(&result.picture)) write_legend(*picture, {given.render.view + " alone"});
+        return result;
+    }
+    if (look.at == LookAt::error) {
+        RenderResult result = render(as_compared(given), stop);
+        const Clock::time_point start = Clock::now();
+        result.picture = draw_error(given, std::get<ImageF>(result.picture), result.stats.method, stop);
+        result.stats.total_ms += ms_since(start);
+        return result;
+    }
     Scene made;
     if (needs_lowering(given)) made = lowered(given);
     const Scene& scene = needs_lowering(given) ? made : given;

@@ -56,6 +56,7 @@ void main() {
         if (fate == kRayPassed) radiance += through * (above.rgb / above.a);
         sum += radiance;
     }
+    if (kCountSteps != 0) sum = vec3(4.0 * float(kMarchBudget - budget));
     imageStore(cascade_image, texel, vec4(0.25 * sum, 1.0));
     report_lost_rays();
 }

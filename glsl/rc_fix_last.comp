@@ -37,6 +37,7 @@ void main() {
         vec3 sky = params.sky_first < 0 ? params.sky.rgb : texelFetch(sky_sectors, params.sky_first + 4 * group + m).rgb;
         sum += radiance + passes * sky;
     }
+    if (kCountSteps != 0) sum = vec3(4.0 * float(kMarchBudget - budget));
     imageStore(cascade_image, texel, vec4(0.25 * sum, 1.0));
     report_lost_rays();
 }

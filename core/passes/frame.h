@@ -43,6 +43,7 @@ inline gl::ShaderConstants scene_constants(const ProgramNeeds& needs) {
 // For programs that meet surfaces and media as well (glsl/lib/surface_light.glsl, media.glsl).
 inline gl::ShaderConstants light_constants(const ProgramNeeds& needs, gl::ShaderConstants constants = {}) {
     if (needs.surfaces) constants.emplace_back("kSceneSurfaces", 1);
+    if (needs.steps) constants.emplace_back("kCountSteps", 1);
     if (needs.media) constants.emplace_back("kSceneMedia", 1);
     return constants;
 }

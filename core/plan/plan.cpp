@@ -315,6 +315,13 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     }
     PackedOutline outline;
     plan.needs.media = !scene.media.empty();
+    plan.look = look_of(scene.render.view);
+    plan.needs.steps = plan.look.at == LookAt::steps;
+    const bool looks_inside = plan.look.at == LookAt::cascade || plan.look.at == LookAt::probes || plan.needs.steps;
+    if (plan.method == "auto" && (looks_inside || plan.look.at == LookAt::skipped)) {
+        plan.method = looks_inside || plan.needs.media ? "rc" : "exact";
+        plan.method_reason = "what the view looks at";
+    }
     if (plan.method == "auto" && plan.needs.media) {
         plan.method = hrc_fits(scene, plan.canvas, limits) ? "hrc" : "rc";
         plan.method_reason = plan.method == "hrc" ? "rays are weakened on their way through media" : "media, and too large a picture for hrc on this device";
@@ -421,7 +428,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         plan.hrc = {};
     }
     // The beams of rc_fix's last cascade differ from the rays of those below it, so that another may not take its place.
-    if (!plan.cascades.empty() && !plan.bilinear_fix && !plan.needs.media && skip(Saving::levels)) {
+    if (!plan.cascades.empty() && !plan.bilinear_fix && !plan.needs.media && !looks_inside && skip(Saving::levels)) {
         const bool dark_sky = brightest(scene.sky) <= 0;
         const double levels = static_cast<double>(leave_out_far(plan.cascades, extent_of_shapes(scene, dark_sky, reflecting), plan.grid.diagonal_px));
         if (levels > 0) leave_out("cascades", dark_sky ? "no light is as far away" : "no shape is as far away", 4.0 * pixels * levels / (settings.spacing_px * settings.spacing_px));

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <string>
 
+#include "core/plan/look.h"
+
 namespace penumbra {
 
 Problems unsupported(const Scene& scene, const Features& features) {
@@ -20,10 +22,10 @@ Problems unsupported(const Scene& scene, const Features& features) {
         break;
     }
     const std::string& view = scene.render.view;
-    if (view != "final" && view != "distance" && view != "normals" && view != "tiles")
-        problems.push_back({"/render/view", "not_supported_yet",
-                            "the debug view '" + view + "' is not supported yet: there are distance, normals and tiles"});
-    else if (view != "final" && (scene.output.format != "png" || scene.output.bit_depth.value_or(8) != 8))
+    if (const std::string why = view_refused(scene); !why.empty())
+        problems.push_back({"/render/view", "not_supported_yet", "the view '" + view + "' is not supported here: " + why});
+    // What one thing alone gives is a picture as any other.
+    else if (view != "final" && look_of(view).at != LookAt::contribution && (scene.output.format != "png" || scene.output.bit_depth.value_or(8) != 8))
         problems.push_back({"/render/view", "not_supported_yet", "a debug view comes as a PNG of 8 bits; other formats of it are not supported yet"});
     if (scene.output.tonemap == "tony" && !features.tone_lut)
         problems.push_back({"/output/tonemap", "not_supported_yet",

@@ -68,6 +68,9 @@ vec2 where_it_entered(vec2 at, vec2 d, ivec2 border, ivec2 last_pixel, inout int
     return at;
 }
 
+// Which program this is: whether a debug view counts loop iterations instead of gathering light.
+const int kCountSteps = 0;
+
 float march_end;  // where the last march ended, along its ray
 
 // Radiance met between start and end along the ray. Spends of the invocation's loop iterations.

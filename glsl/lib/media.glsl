@@ -131,7 +131,7 @@ bool cross_media(vec2 p, vec2 d, float from, float to, inout int budget, out vec
             vec3 depth = extinction * size;
             vec3 passes = exp(-depth);
             // (1 - exp(-depth)) / extinction; its series where the difference would lose its digits.
-            vec3 gain = mix((1.0 - passes) / max(extinction, vec3(1e-30)), size * (1.0 - depth * (0.5 - depth * (1.0 / 6.0))), lessThan(depth, vec3(0.03)));
+            vec3 gain = pick((1.0 - passes) / max(extinction, vec3(1e-30)), size * (1.0 - depth * (0.5 - depth * (1.0 / 6.0))), lessThan(depth, vec3(0.03)));
             gained += through * emission * gain;
             through *= passes;
         }
