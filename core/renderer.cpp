@@ -21,6 +21,8 @@
 #include "core/passes/delta_pass.h"
 #include "core/passes/distance_pass.h"
 #include "core/passes/exact_pass.h"
+#include "core/passes/floor_pass.h"
+#include "core/passes/field_view.h"
 #include "core/passes/frame_look.h"
 #include "core/passes/hrc_pass.h"
 #include "core/passes/jump_flood_pass.h"
@@ -39,7 +41,6 @@
 #include "core/plan/skip.h"
 #include "core/scene/lower.h"
 #include "core/scene/words.h"
-#include "core/views/views.h"
 #include "glsl/cascade.h"
 #include "glsl/distance.h"
 #include "glsl/exact.h"
@@ -67,6 +68,7 @@ struct Renderer::Impl {
           reference(options.shader_dir),
           exact(options.shader_dir),
           delta(options.shader_dir),
+          floor(options.shader_dir),
           compose(options.shader_dir) {
         if (options.tone_lut) compose.set_tone_lut(*options.tone_lut);
         const gl::ContextInfo& gl_info = context.info();
@@ -92,7 +94,6 @@ struct Renderer::Impl {
 
     RenderResult render(const Scene& scene, const std::string& not_exact = {});
     Pixels constant_picture(const Plan& plan, const Scene& scene, GLenum format, Recorder& record);
-    Image8 draw_view(const Plan& plan, const Scene& scene, const DistanceField& field, const ShapeLists& lists);
     double exposure_of(const Plan& plan, const Scene& scene, const FrameLight& light, Recorder& record);
     gl::Texture2D render_hrc(const Plan& plan, const DistanceField& field, FrameLook& look, Recorder& record);
     void check_thread() const {
@@ -117,6 +118,7 @@ struct Renderer::Impl {
     ReferencePass reference;
     ExactPass exact;
     DeltaPass delta;
+    FloorPass floor;
     ComposePass compose;
     DeviceInfo info;
     DeviceLimits limits;
@@ -172,7 +174,7 @@ Pixels Renderer::Impl::constant_picture(const Plan& plan, const Scene& scene, GL
         open.output = scene.output;
         const gl::Texture2D lights = black_texel();
         const DistanceField field = DistancePass::empty_field(plan);
-        const FrameLight light{radiance, lights, field};
+        const FrameLight light{&radiance, &lights, field, false};
         compose.set_lit(black_texel());
         if (format == GL_RGBA32F) return compose.linear(plan, open, light, settings, plan.shown.first, pixel);
         LogAverage average;
@@ -213,36 +215,6 @@ double Renderer::Impl::exposure_of(const Plan& plan, const Scene& scene, const F
     for (const float y : luminances) average.add_to_mean(double(y));
     for (const float y : luminances) average.add(double(y));
     return exposure_factor(scene.output, average.value());
-}
-
-// A look into the frame instead of its light: drawn on the host, of the part that is shown.
-Image8 Renderer::Impl::draw_view(const Plan& plan, const Scene& scene, const DistanceField& field, const ShapeLists& lists) {
-    ViewField seen{plan.shown.size, {}};
-    const glm::ivec2 border = plan.grid.border + plan.shown.first;
-    const bool empty = plan.shape_slices.empty();
-    std::vector<float> grid;
-    if (!empty) {
-        grid.resize(static_cast<std::size_t>(plan.grid.size.x) * static_cast<std::size_t>(plan.grid.size.y));
-        field.distance.read(GL_RED, GL_FLOAT, grid.data());
-    }
-    for (int y = 0; y < seen.size.y; ++y)
-        for (int x = 0; x < seen.size.x; ++x) {
-            const glm::ivec2 at = glm::ivec2(x, y) + border;
-            const auto i = static_cast<std::size_t>(at.y) * static_cast<std::size_t>(plan.grid.size.x) + static_cast<std::size_t>(at.x);
-            seen.distance.push_back(empty ? static_cast<float>(plan.grid.diagonal_px) : grid[i]);
-        }
-    if (scene.render.view == "distance") return draw_distance(seen);
-    if (scene.render.view == "normals") return draw_normals(seen);
-    // Without lists every tile asks every shape.
-    const int side = glsl::kDistanceTile;
-    glm::ivec2 tiles = lists.tiles;
-    std::vector<int> counts(lists.tile_count(), 0);
-    for (std::size_t i = 0; i < lists.ranges.size(); ++i) counts[i % counts.size()] += lists.ranges[i].y - lists.ranges[i].x;
-    if (tiles.x == 0) {
-        tiles = (plan.grid.size + side - 1) / side;
-        counts.assign(static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y), static_cast<int>(scene.shapes.size()));
-    }
-    return draw_tiles(seen, counts, tiles, border, side);
 }
 
 // The frame, in the order in which it happens.
@@ -289,7 +261,7 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         record.pass("closed", {glsl::kExactTile * glsl::kExactTile, static_cast<int>(plan.closed_tiles.size())}, [&] { return closed.run(plan, settings, field); });
 
     if (plan.look.at == LookAt::field) {
-        record.host("view", plan.shown.size, [&] { result.picture = draw_view(plan, scene, field, lists); });
+        record.host("view", plan.shown.size, [&] { result.picture = draw_field(plan, scene, field, lists); });
         context.check_reset();
         settings.give(std::move(field.distance));
         settings.give(std::move(field.material));
@@ -324,17 +296,22 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     if (plan.reference.rays > 0)
         record.pass("reference", plan.lit.size,
                     [&] { return reference.run(plan, scene.sky, buffers, field, settings, radiance); });
+    gl::Texture2D moment_x, moment_y;
     if (plan.exact.used) {
         ExactPass::SeeCells see_cells;
         if (plan.look.at == LookAt::skipped) see_cells = [&](const gl::Texture2D& cells, int row, int rows) { look.see_cells(cells, row, rows); };
+        ExactPass::Light found;
         exact.run(plan, scene.sky, field, settings, delta,
-                  [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, radiance, see_cells);
+                  [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, found, see_cells);
+        radiance = std::move(found.mean);
+        moment_x = std::move(found.moment_x);
+        moment_y = std::move(found.moment_y);
     }
     if (plan.hrc.active()) radiance = render_hrc(plan, field, look, record);
     if (plan.look.at != LookAt::picture) {
         record.host("view", plan.shown.size, [&] { result.picture = look.draw(plan); });
         context.check_reset();
-        for (gl::Texture2D* texture : {&field.distance, &field.material, &radiance}) settings.give(std::move(*texture));
+        for (gl::Texture2D* texture : {&field.distance, &field.material, &radiance, &moment_x, &moment_y}) settings.give(std::move(*texture));
         stats.passes = record.finish();
         stats.gpu_bytes = plan.gpu_bytes + buffers.bytes() + surfaces.bytes();
         stats.total_ms = ms_since(start);
@@ -350,16 +327,31 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         });
     if (plan.lone) record.pass("lone pixels", plan.lit.size, [&] { return lone.run(plan, scene.sky, field, settings, radiance); });
     gl::Texture2D lights;
-    if (plan.delta.used()) record.pass("lights", plan.lit.size, [&] { return delta.pixels(plan, field, settings, lights); });
+    // On a floor with relief lights without a size are added to what it sends up.
+    const bool lit_floor = plan.floor.relief && scene.output.solids != Solids::lit;
+    if (plan.delta.used() && !lit_floor) record.pass("lights", plan.lit.size, [&] { return delta.pixels(plan, field, settings, lights); });
     // Where there is no light one black texel stands for every pixel.
-    for (gl::Texture2D* texture : {&radiance, &lights}) {
+    for (gl::Texture2D* texture : {&radiance, &lights, &moment_x, &moment_y}) {
         if (!*texture) *texture = black_texel();
     }
-    const FrameLight light{radiance, lights, field};
+    const FrameLight arriving{&radiance, &lights, field, false};
     if (scene.output.solids == Solids::lit)
-        record.host("lit solids", plan.canvas, [&] { compose.set_lit(lit_solids(plan, scene, light)); });
+        record.host("lit solids", plan.canvas, [&] { compose.set_lit(lit_solids(plan, scene, arriving)); });
     else
         compose.set_lit(black_texel());
+    gl::Texture2D sent_up, black;
+    if (plan.floor.used) {
+        record.host("floor pictures", plan.lit.size, [&] { floor.prepare(plan, scene, settings); });
+        record.pass("floor", plan.lit.size, [&] { return floor.run(plan, {radiance, lights, moment_x, moment_y}, settings, sent_up); });
+        if (plan.delta.used() && plan.floor.relief)
+            record.pass("lights on floor", plan.lit.size, [&] {
+                floor.bind();
+                return delta.on_floor(plan, field, settings, sent_up);
+            });
+        floor.give_back(settings);
+        black = black_texel();
+    }
+    const FrameLight light = plan.floor.used ? FrameLight{&sent_up, &black, field, true} : arriving;
     const double exposure = linear ? 1.0 : exposure_of(plan, scene, light, record);
 
     Reader reader(plan.shown.size, format);
@@ -380,6 +372,9 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     settings.give(std::move(field.material));
     settings.give(std::move(radiance));
     settings.give(std::move(lights));
+    settings.give(std::move(moment_x));
+    settings.give(std::move(moment_y));
+    settings.give(std::move(sent_up));
 
     stats.passes = record.finish();
     stats.gpu_bytes = plan.gpu_bytes + buffers.bytes();

@@ -23,9 +23,11 @@ const int kShapeBitmap = 6;
 //   1: emission rgb, emission scale (bitmap) or marched light's factor (others)
 //   2: circle cx cy r -   ellipse cx cy rx ry   rect cx cy hx hy   line x0 y0 x1 y1
 //      polyline, polygon: bounding box x0 y0 x1 y1   bitmap x y w h
-//   3: ellipse cos sin - -   rect cos sin corner -   line, polyline - - half width -
+//   3: ellipse cos sin - -   rect cos sin corner -   line, polyline: stops of its gradient, first texel of it, half width, -
 //      bitmap: first texel, texels across, texels down, alpha threshold
 const int kShapeTexels = 4;
+// A stroke's gradient stands among the edges: of a polyline, a texel for each of its edges with the shares of the stroke's length at
+// which it starts and ends; then the stops, emission rgb and share. A stroke without one has no stops.
 
 // Newton steps of the distance to an ellipse; the plan counts them where loops are bounded.
 const int kEllipseIterations = 12;
@@ -33,7 +35,7 @@ const int kEllipseIterations = 12;
 // Translucent shapes have records as others, behind all of them; their texel 1 holds the extinction per px. More of them:
 //   0: first record, how many, iterations of asking each once, unused    1: a box around all of them, cut off at the domain
 //   then two texels each: emission rgb per px, unused | the box that it lies in
-const int kMediaUnit = 10;  // RGBA32F
+const int kMediaUnit = 14;  // RGBA32F
 
 // Texture units of the scene's buffer textures, the same in every pass.
 const int kShapeRecordsUnit = 0;

@@ -34,11 +34,16 @@ public:
 
     // `record(name, extent, run)` times each step: lists, points, cells, fill.
     using Record = std::function<void(const char* name, glm::ivec2 extent, const std::function<PassWork()>& run)>;
+    // What is found of each pixel: the mean of radiance, and where the plan asks for them of radiance times direction.
+    struct Light {
+        gl::Texture2D mean, moment_x, moment_y;
+    };
     // Once a band is filled: the texture of cells (glsl/exact.h), the band's first row and how many.
     using SeeCells = std::function<void(const gl::Texture2D& cells, int first_row, int rows)>;
     // `delta` lights surfaces where light bounces.
     void run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings, DeltaPass& delta,
-             const Record& record, gl::Texture2D& out, const SeeCells& see_cells = {});
+             const Record& record, Light& out, const SeeCells& see_cells = {});
+
     // What surfaces shine with after all bounces: by element, as glsl/exact.h lays them out. For methods that sample.
     std::vector<glm::vec4> surfaces(const Plan& plan, const Sky& sky, const PassSettings& settings, DeltaPass& delta, const Record& record);
 
@@ -48,11 +53,11 @@ private:
     struct Band;
     Band prepare(const Plan& plan, const Sky& sky) const;
     PassWork make_lists(const Plan& plan, Band& band);
-    PassWork solve(const Plan& plan, const DistanceField& field, Band& band, int level);
+    PassWork solve(const Plan& plan, const DistanceField& field, Band& band, int level, int moment = 0);
     // Lets the light bounce between surfaces: afterwards `elements_` tells what each shines with.
     void bounce(const Plan& plan, const PassSettings& settings, DeltaPass& delta, const Record& record, Band& band);
     PassWork reflect(const Plan& plan, Band& band, bool first);
-    void run_solver(glsl::ExactParams params, Band& band, PassWork& work,
+    void run_solver(glsl::ExactParams params, Band& band, PassWork& work, int moment,
                     const std::function<void(const glsl::ExactParams&)>& dispatch);
 
     // A program for what a scene has, compiled when first asked for.
@@ -60,6 +65,7 @@ private:
         bool arcs, ellipses;
         int sky;
         bool slopes, surfaces, nodes;
+        int moment;  // 0: mean radiance; 1, 2: times the direction's x or y
         auto operator<=>(const Needs&) const = default;
     };
     gl::ComputeProgram& lists_for(const ExactPlan& exact);
@@ -71,7 +77,7 @@ private:
     gl::ComputeProgram split_;
     gl::ComputeProgram gather_;
     gl::ComputeProgram mean_;
-    gl::ComputeProgram fill_;
+    gl::ProgramForms fill_;
     gl::ComputeProgram reflect_;
     gl::StorageBuffer coarse_heads_, coarse_entries_, coarse_lights_;
     gl::StorageBuffer heads_, entries_, lights_;

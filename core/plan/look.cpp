@@ -15,6 +15,7 @@ namespace {
 
 void darken(Shape& shape) {
     shape.emission = Colour(0);
+    shape.gradient.clear();
     if (shape.medium) shape.medium->emission = Colour(0);
     auto* bitmap = std::get_if<Bitmap>(&shape.geometry);
     if (bitmap != nullptr && !bitmap->as_albedo) bitmap->emission_scale = 0;

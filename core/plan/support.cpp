@@ -19,8 +19,12 @@ Problems unsupported(const Scene& scene, const Features& features) {
         const std::string medium = "/shapes/" + std::to_string(i) + "/medium";
         if (scene.render.method == "exact") refuse("/render/method", "the method 'exact' with translucent shapes (" + medium + ") is");
         if (scene.render.bounces > 0) refuse("/render/bounces", "light that bounces in a scene with translucent shapes (" + medium + ") is");
+        if (scene.canvas.floor.has_relief())
+            refuse("/canvas/floor", "a floor with a normal_map, roughness, metallic or reflectance in a scene with translucent shapes (" + medium + ") is");
         break;
     }
+    if (scene.canvas.floor.has_relief() && scene.render.method != "auto" && scene.render.method != "exact")
+        refuse("/canvas/floor", "a floor with a normal_map, roughness, metallic or reflectance with the method '" + scene.render.method + "' is");
     const std::string& view = scene.render.view;
     if (const std::string why = view_refused(scene); !why.empty())
         problems.push_back({"/render/view", "not_supported_yet", "the view '" + view + "' is not supported here: " + why});

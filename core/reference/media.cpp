@@ -174,7 +174,7 @@ Colour Media::radiance(Point p, double angle, const Interval& interval, const Sk
         const Piece& piece = boundary_.pieces()[std::size_t(interval.piece)];
         const double distance = distance_to(piece, p, d);
         end = std::isfinite(distance) ? std::max(distance, 0.0) : 0.0;
-        behind = boundary_.material_of(piece).emission;
+        behind = boundary_.material_of(piece).emission_at(p + d * end);
     }
     const Passage passage = along(p, d, end);
     return passage.radiance + passage.transmittance * behind;

@@ -83,6 +83,7 @@ ProblemKind kind_of(Fault fault) {
         case Fault::body_too_large: return ProblemKind::body_too_large;
         case Fault::timeout: return ProblemKind::request_timeout;
         case Fault::too_many_connections: return ProblemKind::too_many_connections;
+        case Fault::malformed:
         case Fault::none: break;
     }
     return ProblemKind::bad_request;
@@ -160,7 +161,8 @@ struct HttpServer::Impl {
 
     std::string refuse_connection(Exchange& exchange) const {
         if (exchange.request_id.empty()) exchange.request_id = new_request_id();
-        const HttpProblem problem = make_problem(kind_of(exchange.fault), "");
+        const HttpProblem problem =
+            make_problem(kind_of(exchange.fault), exchange.fault == Fault::malformed ? "The request line or a header is malformed." : "");
         log.info("refused", {{"status", std::int64_t(status_of(problem))},
                              {"ms", ms_since(exchange.start)},
                              {"id", exchange.request_id}});
@@ -330,6 +332,9 @@ struct HttpServer::Impl {
             if (!too_long) body.append(data, size);
             return !too_long;
         });
+        // The library of Debian 12 takes chunks that do not end as they must for the end of the body.
+        constexpr std::uint32_t kTwoLines = 0x0d0a0d0a;
+        if (exchange.body_read && exchange.body_end != kTwoLines && request.has_header("Transfer-Encoding")) exchange.body_read = false;
         if (exchange.body_read) return true;
         if (too_long || exchange.fault == Fault::body_too_large) {
             problem = too_large();
@@ -479,6 +484,8 @@ std::string HttpServer::url() const {
 }
 
 bool HttpServer::listening() const { return impl_->listening; }
+
+void HttpServer::serve_connection(int socket) { impl_->server.serve(socket); }
 
 void HttpServer::stop() {
     if (!impl_->thread.joinable()) return;

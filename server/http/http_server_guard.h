@@ -9,6 +9,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <mutex>
@@ -18,9 +19,11 @@
 
 #include <httplib.h>
 
+#include "server/http/header_grammar.h"
+
 namespace penumbra {
 
-enum class Fault { none, headers_too_large, body_too_large, timeout, too_many_connections };
+enum class Fault { none, malformed, headers_too_large, body_too_large, timeout, too_many_connections };
 
 struct GuardLimits {
     std::size_t header_bytes = 0;
@@ -42,6 +45,7 @@ struct Exchange {
     Fault fault = Fault::none;  // a limit that was met
     bool expects_body = false;
     bool body_read = false;
+    std::uint32_t body_end = 0;  // the last four bytes of the body, framing and all
     bool close = false;  // end the connection after the answer
     std::function<bool()> client_gone;
 };
@@ -75,7 +79,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     bool fill(Clock::time_point deadline);
-    bool count_header(char c);
+    Fault count_header(char c);
 
     int socket_;
     const GuardLimits& limits_;
@@ -86,6 +90,7 @@ private:
     bool answered_ = false;
     bool in_header_ = true;
     std::size_t header_bytes_ = 0, header_lines_ = 0, body_bytes_ = 0;
+    HeaderGrammar grammar_;
     int line_end_ = 0;  // how much of CR LF CR LF has been seen
 };
 
@@ -132,6 +137,7 @@ public:
     // Connections end after their present request. Called before stop().
     void drain() { draining_ = true; }
     bool draining() const { return draining_; }
+    void serve(socket_t socket) { process_and_close_socket(socket); }  // one connection, on this thread
     void widen_backlog();  // after binding: the library listens with a backlog of 5
 
 private:

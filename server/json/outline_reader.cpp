@@ -81,7 +81,7 @@ Polygon OutlineReader::nothing(const Path& where, OutlineKey key) {
 
 Polygon OutlineReader::path(const Path& where, NodeId id, Shape& shape) {
     const Members members(reader_, where, id, kPathKeys, "a path");
-    read_material(reader_, members, where, limits_, shape);
+    read_material(reader_, limits_, where, members, shape);
     const bool nonzero = choice(members, where, "fill_rule", kFillRules) == 0;
     Point position(0);
     if (const NodeId at = members.find("position"); at != kNoNode) {
@@ -106,7 +106,7 @@ Polygon OutlineReader::path(const Path& where, NodeId id, Shape& shape) {
 
 Polygon OutlineReader::text(const Path& where, NodeId id, Shape& shape) {
     const Members members(reader_, where, id, kTextKeys, "a text");
-    read_material(reader_, members, where, limits_, shape);
+    read_material(reader_, limits_, where, members, shape);
     TextSettings settings;
     settings.anchor =
         std::array{TextAnchor::start, TextAnchor::middle, TextAnchor::end}[choice(members, where, "anchor", kAnchors)];
