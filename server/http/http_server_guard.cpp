@@ -173,7 +173,7 @@ ssize_t GuardedStream::read(char* data, std::size_t size) {
 }
 
 ssize_t GuardedStream::write(const char* data, std::size_t size) {
-    if (!answered_) response_deadline_ = Clock::now() + limits_.response_time;
+    if (!answered_ || exchange_->streaming) response_deadline_ = Clock::now() + limits_.response_time;
     answered_ = true;
     std::size_t sent = 0;
     while (sent < size) {

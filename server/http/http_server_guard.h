@@ -18,9 +18,9 @@
 
 #include <httplib.h>
 
-namespace penumbra {
+#include "server/http/fault.h"
 
-enum class Fault { none, headers_too_large, body_too_large, timeout, too_many_connections };
+namespace penumbra {
 
 struct GuardLimits {
     std::size_t header_bytes = 0;
@@ -43,6 +43,12 @@ struct Exchange {
     bool expects_body = false;
     bool body_read = false;
     bool close = false;  // end the connection after the answer
+    bool streaming = false;  // the answer comes in parts: each has the time that a whole one has
+    bool accepts_gzip = false;
+    std::string trace_parent, trace_id;  // as sent, when it was sound
+    std::string origin;                  // of a browser's script
+    std::string client;                  // whose share of the renderers it takes
+    const char* endpoint = "none";       // for figures: the path's pattern
     std::function<bool()> client_gone;
 };
 
