@@ -25,9 +25,13 @@
 #include "core/passes/rc_fix_pass.h"
 #include "core/passes/recorder.h"
 #include "core/passes/lit_solids.h"
+#include "core/passes/picture_reader.h"
+#include "core/passes/closed_pass.h"
+#include "core/passes/lone_pass.h"
 #include "core/passes/reference_pass.h"
 #include "core/passes/resolve_pass.h"
 #include "core/passes/scene_buffers.h"
+#include "core/passes/surface_light.h"
 #include "core/plan/plan.h"
 #include "core/plan/shape_lists.h"
 #include "core/plan/skip.h"
@@ -36,65 +40,13 @@
 #include "core/views/views.h"
 #include "glsl/cascade.h"
 #include "glsl/distance.h"
+#include "glsl/exact.h"
 
 namespace penumbra {
 namespace {
 
 // Two renders of 4096 x 4096.
 constexpr std::size_t kPoolBytes = std::size_t(1) << 30;
-
-using Pixels = std::variant<Image8, Image16, ImageF>;
-
-// Collects the bands of the picture, without their alpha.
-class Reader {
-public:
-    Reader(glm::ivec2 size, GLenum format) {
-        if (format == GL_RGBA32F)
-            picture_ = ImageF(size.x, size.y, 3);
-        else if (format == GL_RGBA16)
-            picture_ = Image16(size.x, size.y, 3);
-        else
-            picture_ = Image8(size.x, size.y, 3);
-    }
-
-    void read(const gl::Texture2D& band, int first_row) {
-        std::visit([&](auto& picture) { read_into(picture, band, first_row); }, picture_);
-    }
-
-    Pixels take() { return std::move(picture_); }
-
-private:
-    template <class T>
-    static void read_into(BasicImage<T>& picture, const gl::Texture2D& band, int first_row) {
-        const glm::ivec2 size = band.size();
-        BasicImage<T> rgba(size.x, size.y, 4);
-        band.read(GL_RGBA, kType<T>, rgba.data.data());
-        const std::size_t count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
-        const T* from = rgba.data.data();
-        T* to = picture.at(0, first_row);
-        for (std::size_t i = 0; i < count; ++i, from += 4, to += 3) {
-            to[0] = from[0];
-            to[1] = from[1];
-            to[2] = from[2];
-        }
-    }
-
-    template <class T>
-    static constexpr GLenum kType = std::is_same_v<T, float> ? GL_FLOAT : sizeof(T) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE;
-
-    Pixels picture_;
-};
-
-// A picture of one pixel, as large as this.
-template <class T>
-BasicImage<T> filled(const BasicImage<T>& pixel, glm::ivec2 size) {
-    BasicImage<T> picture(size.x, size.y, pixel.channels);
-    if (std::all_of(pixel.data.begin(), pixel.data.end(), [](T value) { return value == T(0); })) return picture;
-    const std::size_t row = static_cast<std::size_t>(size.x) * pixel.data.size();
-    for (std::size_t i = 0; i < row; i += pixel.data.size()) std::copy(pixel.data.begin(), pixel.data.end(), picture.data.begin() + static_cast<std::ptrdiff_t>(i));
-    for (int y = 1; y < size.y; ++y) std::copy_n(picture.at(0, 0), row, picture.at(0, y));
-    return picture;
-}
 
 }  // namespace
 
@@ -107,6 +59,8 @@ struct Renderer::Impl {
           cascade(options.shader_dir),
           rc_fix(options.shader_dir),
           resolve(options.shader_dir),
+          lone(options.shader_dir),
+          closed(options.shader_dir),
           hrc(options.shader_dir),
           reference(options.shader_dir),
           exact(options.shader_dir),
@@ -151,6 +105,8 @@ struct Renderer::Impl {
     CascadePass cascade;
     RcFixPass rc_fix;
     ResolvePass resolve;
+    LonePass lone;
+    ClosedPass closed;
     HrcPass hrc;
     ReferencePass reference;
     ExactPass exact;
@@ -322,6 +278,9 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     if (!plan.jump_steps.empty())
         record.pass("jump flood", plan.grid.size, [&] { return jump_flood.run(plan, settings, field); });
 
+    if (!plan.closed_tiles.empty())
+        record.pass("closed", {glsl::kExactTile * glsl::kExactTile, static_cast<int>(plan.closed_tiles.size())}, [&] { return closed.run(plan, settings, field); });
+
     if (scene.render.view != "final") {
         record.host("view", plan.shown.size, [&] { result.picture = draw_view(plan, scene, field, lists); });
         context.check_reset();
@@ -333,6 +292,8 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         return result;
     }
 
+    const SurfaceLight surfaces = plan.needs.surfaces ? SurfaceLight(plan, scene.sky, exact, delta, settings, record) : SurfaceLight();
+    surfaces.bind();
     const bool marches = !plan.cascades.empty() || plan.hrc.active();
     if (marches) {
         const std::uint32_t none = 0;
@@ -365,6 +326,7 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
             radiance = std::move(resolved);
             return work;
         });
+    if (plan.lone) record.pass("lone pixels", plan.lit.size, [&] { return lone.run(plan, scene.sky, field, settings, radiance); });
     gl::Texture2D lights;
     if (plan.delta.used()) record.pass("lights", plan.lit.size, [&] { return delta.pixels(plan, field, settings, lights); });
     // Where there is no light one black texel stands for every pixel.
@@ -405,6 +367,7 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         const double pixels = double(plan.lit.size.x) * plan.lit.size.y;
         if (points < pixels) stats.skipped.push_back({"points", "the corners of a cell tell all of it", pixels - points});
     }
+    stats.gpu_bytes += surfaces.bytes();
     if (marches) {
         std::uint32_t lost = 0;
         lost_rays.read(0, &lost, sizeof(lost));

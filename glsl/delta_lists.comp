@@ -2,6 +2,7 @@
 // pieces of outline that may stand between some point of the tile and the light. One thread is one tile and light.
 #version 430 core
 #include "delta.h"
+#include "lib/pick.glsl"
 
 layout(local_size_x = kDeltaGroupX, local_size_y = kDeltaGroupY) in;
 layout(std140, binding = kDeltaParamsBinding) uniform Params { DeltaParams params; };
@@ -41,8 +42,8 @@ bool straight_between(vec2 a, vec2 b, out bool fills) {
     inside_of(a, fa, ba);
     inside_of(b, fb, bb);
     vec4 cut = fa / (fa - fb);
-    vec4 from = mix(vec4(0.0), cut, lessThan(fa, vec4(0.0)));
-    vec4 to = mix(vec4(1.0), cut, lessThan(fb, vec4(0.0)));
+    vec4 from = pick(vec4(0.0), cut, lessThan(fa, vec4(0.0)));
+    vec4 to = pick(vec4(1.0), cut, lessThan(fb, vec4(0.0)));
     float from_back = ba < 0.0 ? ba / (ba - bb) : 0.0;
     float to_back = bb < 0.0 ? ba / (ba - bb) : 1.0;
     float t0 = max(max(max(from.x, from.y), max(from.z, from.w)), from_back);

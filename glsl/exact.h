@@ -15,6 +15,7 @@ const int kExactParamsBinding = 0;
 // column and row beyond, so that every cell has four corners.
 const int kExactTile = 16;
 const int kExactCell = 8;
+const int kExactTileRows = kExactTile + 1;  // of points, of the last tiles
 
 // Texture units (0 to 3 are the scene's).
 const int kExactDistanceUnit = 4;
@@ -23,6 +24,7 @@ const int kExactEntriesUnit = 6;      // RGBA32F: geometry of the pieces of the 
 const int kExactLightsUnit = 7;       // RGBA32F: radiance of an entry's piece, and which piece it is
 const int kExactSectorsUnit = 9;      // RGBA32F: cos and sin of the sector's axis, its angle, unused
 const int kExactSkyUnit = 10;         // RGBA32F: two texels a node: sky integral from angle 0, sky radiance and part
+const int kExactAsksUnit = 11;        // R32UI: a word for each row of a tile, a bit for each point that is asked for
 const int kExactPointsUnit = 11;      // R32UI: x | y << 8 in the tile, tile by tile
 const int kExactValueUnit = 8;
 const int kExactJobsUnit = 12;        // R32UI: tile | four points of it << 24; of surfaces: tile
@@ -34,7 +36,6 @@ const int kExactNodesUnit = 15;       // RGBA32F: where surfaces are solved, job
 const int kExactValueImage = 0;   // rgb mean radiance, a: signature of what is seen
 const int kExactSlopeXImage = 1;  // rgb its slope along x per pixel, a: bound on its third derivatives
 const int kExactSlopeYImage = 2;  // rgb its slope along y, a: sectors that are done
-const int kExactStateImage = 3;   // R32UI: 1 where a point has been asked for
 const int kExactRadianceImage = 5;
 const int kExactLeafImage = 4;    // R32UI: at a cell's first pixel: size of the smallest cell there
 
@@ -44,6 +45,8 @@ const int kExactEntriesStorage = 1;
 const int kExactLightsStorage = 2;
 const int kExactPointsStorage = 3;
 const int kExactCountersStorage = 4;
+const int kExactJobsStorage = 5;
+const int kExactAsksStorage = 6;
 
 // Counters, in uints. From kExactCountLevel on, four a level: the solver's jobs, and the groups of its dispatch. From
 // kExactCountTiles on, level by level: how many points each tile asks for.
@@ -112,7 +115,7 @@ struct ExactParams {
     float floor_share;   // of the mean radiance, added to what the tolerance is relative to
     int ask_first;       // asks for the corners of the largest cells, and no more
     int strict_dark;     // split where some corners are dark and others are not
-    int pad0;
+    int first_ask;       // of the level, in the words of what is asked for
     int pad1;
     ivec4 root_counts;   // of the one list of all pieces, by kind
     ivec4 root_lights;   // the emitting ones among them
@@ -123,6 +126,7 @@ struct ExactParams {
     ivec2 fill_first;    // first of those pixels, of the band
     int fill_row;        // where their rows begin in the image
     int pad7;
+    vec4 most;           // no pixel has more light, by colour
 };
 
 #ifdef __cplusplus

@@ -2,6 +2,7 @@
 // its cell. One thread is one pixel.
 #version 430 core
 #include "exact.h"
+#include "lib/pick.glsl"
 
 layout(local_size_x = kExactGroupX, local_size_y = kExactGroupY) in;
 layout(std140, binding = kExactParamsBinding) uniform Params { ExactParams params; };
@@ -30,14 +31,14 @@ void main() {
         for (int k = 0; k < 4; ++k) {
             ivec2 which = ivec2(k & 1, k >> 1);
             ivec2 from = corner + which * h;
-            vec2 w = mix(1.0 - u, u, equal(which, ivec2(1)));
+            vec2 w = pick(1.0 - u, u, equal(which, ivec2(1)));
             vec2 away = vec2(at - corner) - vec2(which) * size;
             // Half of what the slopes foretell, weighted: exact for quadratics.
             vec3 value = imageLoad(value_image, from).rgb + 0.5 * (imageLoad(slope_x_image, from).rgb * away.x +
                          imageLoad(slope_y_image, from).rgb * away.y);
             sum += w.x * w.y * value;
         }
-        sum = max(sum, vec3(0.0));
+        sum = clamp(sum, vec3(0.0), params.most.rgb);
     }
     imageStore(radiance_image, texel + ivec2(0, params.fill_row), vec4(sum, 1.0));
 }

@@ -3,6 +3,7 @@
 // what surely hides the rest. One thread is one tile and sector.
 #version 430 core
 #include "exact.h"
+#include "lib/pick.glsl"
 
 layout(local_size_x = kExactGroupX, local_size_y = kExactGroupY) in;
 layout(std140, binding = kExactParamsBinding) uniform Params { ExactParams params; };
@@ -57,7 +58,7 @@ void hide_behind(vec2 a, vec2 b, float high) {
     for (int i = 0; i < 2; ++i) {
         vec4 before = low_x[i] * b.y - low_y[i] * b.x + low_reach[i];
         vec4 after = high_y[i] * a.x - high_x[i] * a.y + high_reach[i];
-        hidden[i] = mix(hidden[i], min(hidden[i], vec4(high)), lessThan(max(before, after), vec4(0.0)));
+        hidden[i] = pick(hidden[i], min(hidden[i], vec4(high)), lessThan(max(before, after), vec4(0.0)));
     }
 }
 
@@ -83,8 +84,8 @@ bool straight_depths(vec2 a, vec2 b, out float low, out float high, out bool hid
     vec3 fa = inside_of(a);
     vec3 fb = inside_of(b);
     vec3 cut = fa / (fa - fb);
-    vec3 from = mix(vec3(0.0), cut, lessThan(fa, vec3(0.0)));
-    vec3 to = mix(vec3(1.0), cut, lessThan(fb, vec3(0.0)));
+    vec3 from = pick(vec3(0.0), cut, lessThan(fa, vec3(0.0)));
+    vec3 to = pick(vec3(1.0), cut, lessThan(fb, vec3(0.0)));
     float t0 = max(max(from.x, from.y), max(from.z, 0.0));
     float t1 = min(min(to.x, to.y), min(to.z, 1.0));
     bvec3 out_of = lessThan(max(fa, fb), vec3(0.0));

@@ -2,6 +2,7 @@
 // the irradiance, its change across each element, and its integral along the piece. One thread is one piece.
 #version 430 core
 #include "exact.h"
+#include "lib/pick.glsl"
 
 layout(local_size_x = kExactGroupX, local_size_y = kExactGroupY) in;
 layout(std140, binding = kExactParamsBinding) uniform Params { ExactParams params; };
@@ -21,7 +22,7 @@ vec3 shine(int element, vec3 emission, vec3 half_albedo) {
         if (params.light_scale > 0.0) arriving += params.light_scale * texelFetch(light_irradiance, at, 0).rgb;
     }
     // What does not reflect has not been asked for its irradiance.
-    return emission + mix(vec3(0.0), half_albedo * arriving, greaterThan(half_albedo, vec3(0.0)));
+    return emission + pick(vec3(0.0), half_albedo * arriving, greaterThan(half_albedo, vec3(0.0)));
 }
 
 // Where element `index` starts.
@@ -31,7 +32,7 @@ float course_of(int index, float count, bool whole) {
     return x < 0.5 ? 2.0 * x * x : 1.0 - 2.0 * (1.0 - x) * (1.0 - x);
 }
 
-vec3 smaller(vec3 a, vec3 b) { return mix(vec3(0.0), sign(a) * min(abs(a), abs(b)), greaterThan(a * b, vec3(0.0))); }
+vec3 smaller(vec3 a, vec3 b) { return pick(vec3(0.0), sign(a) * min(abs(a), abs(b)), greaterThan(a * b, vec3(0.0))); }
 
 void main() {
     int piece = int(gl_GlobalInvocationID.x);

@@ -10,23 +10,18 @@ layout(binding = kExactDistanceUnit) uniform sampler2D distance_texture;
 layout(binding = kExactValueImage, rgba32f) readonly uniform image2D value_image;
 layout(binding = kExactSlopeXImage, rgba32f) readonly uniform image2D slope_x_image;
 layout(binding = kExactSlopeYImage, rgba32f) readonly uniform image2D slope_y_image;
-layout(binding = kExactStateImage, r32ui) uniform uimage2D state_image;
 layout(binding = kExactLeafImage, r32ui) uniform uimage2D leaf_image;
-layout(std430, binding = kExactPointsStorage) writeonly buffer Points { uint out_points[]; };
-layout(std430, binding = kExactCountersStorage) buffer Counters { uint counters[]; };
+layout(std430, binding = kExactAsksStorage) buffer AskedBits { uint asks[]; };
 layout(binding = kExactSkyUnit) uniform samplerBuffer mean_light;
 layout(binding = kExactHeadsUnit) uniform usamplerBuffer heads;
 
 float largest(vec3 c) { return max(c.r, max(c.g, c.b)); }
 
-// Asks for a point once.
+// A bit of the tile that it is of, a word a row: in which order cells ask shows nowhere.
 void ask(ivec2 point) {
-    if (imageAtomicOr(state_image, point, 1u) != 0u) return;
     ivec2 tile = min(point / kExactTile, params.tiles - 1);
     ivec2 local = point - tile * kExactTile;
-    int tile_index = tile.y * params.tiles.x + tile.x;
-    uint index = atomicAdd(counters[params.first_count + tile_index], 1u);
-    out_points[params.first_point + tile_index * params.tile_points + int(index)] = uint(local.x | (local.y << 8));
+    atomicOr(asks[params.first_ask + (tile.y * params.tiles.x + tile.x) * kExactTileRows + local.y], 1u << local.x);
 }
 
 void main() {

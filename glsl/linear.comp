@@ -16,5 +16,5 @@ void main() {
     bool solid = params.has_shapes != 0 && pixel_distance(pixel) <= 0.0;
     vec3 radiance = solid ? solid_radiance(pixel) : floor_radiance(pixel);
     // A scene may hold negative zeros, the picture none.
-    imageStore(linear_image, texel, vec4(mix(radiance, vec3(0.0), equal(radiance, vec3(0.0))), solid ? 0.0 : 1.0));
+    imageStore(linear_image, texel, vec4(pick(radiance, vec3(0.0), equal(radiance, vec3(0.0))), solid ? 0.0 : 1.0));
 }

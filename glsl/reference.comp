@@ -4,6 +4,7 @@
 #include "reference.h"
 #include "lib/domain.glsl"
 #include "lib/intersect.glsl"
+#include "lib/surface_light.glsl"
 
 layout(local_size_x = kReferenceGroupX, local_size_y = kReferenceGroupY) in;
 layout(std140, binding = kReferenceParamsBinding) uniform Params { ReferenceParams params; };
@@ -26,7 +27,9 @@ vec3 ray_radiance(vec2 p, int ray, uint seed) {
     int hit = first_hit(p, d, params.shape_count, t);
     if (hit >= 0 && t <= exit_distance(p, d, params.domain)) {
         // A bitmap's colour is asked just inside the texel that was met.
-        return shape_emission(hit, p + d * (t + 1e-3));
+        vec3 light = shape_emission(hit, p + d * (t + 1e-3));
+        int budget = 0;  // the plan counts what a ray may cost
+        return kSceneSurfaces != 0 ? surface_light(p + d * t, d, params.border, light, budget) : light;
     }
     return params.sky_first < 0 ? params.sky.rgb : texelFetch(sky_sectors, params.sky_first + ray).rgb;
 }

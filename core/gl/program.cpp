@@ -79,9 +79,10 @@ int ComputeProgram::rows_per_band(glm::ivec2 extent, std::size_t slice) const {
     return static_cast<int>(groups) * group_.y;
 }
 
-// What the next pass may read: images, textures, storage, and counts of groups.
+// What the next pass may read: images, textures, storage, and counts of groups; and what it may be given anew between two.
 constexpr GLbitfield kPassBarrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                                    GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT;
+                                    GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
+                                    GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT;
 
 void ComputeProgram::run(const void* params, std::size_t bytes, glm::ivec2 extent) {
     checkpoint();

@@ -50,6 +50,12 @@ void StorageBuffer::bind_texture(int unit) const {
 
 void StorageBuffer::bind_indirect() const { glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer_); }
 
+void StorageBuffer::clear(std::size_t bytes) {
+    const GLuint zero = 0;
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer_);
+    glClearBufferSubData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+}
+
 void StorageBuffer::write(std::size_t offset, const void* data, std::size_t bytes) {
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer_);
     glBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);

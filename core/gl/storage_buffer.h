@@ -23,6 +23,8 @@ public:
     void bind_storage(int binding) const;
     void bind_texture(int unit) const;
     void bind_indirect() const;
+    // Zeroes the first `bytes`.
+    void clear(std::size_t bytes);
     void write(std::size_t offset, const void* data, std::size_t bytes);
     // Waits for the device.
     void read(std::size_t offset, void* out, std::size_t bytes) const;

@@ -55,7 +55,7 @@ PassWork CascadePass::run(const Plan& plan, std::size_t level, const Sky& sky, c
     out.bind_image(glsl::kCascadeImageBinding, GL_WRITE_ONLY);
 
     PassWork work;
-    work.dispatches = program_.of(scene_constants(plan.needs)).dispatch(params, c.texture, settings.rays / 4);
+    work.dispatches = program_.of(march_constants(plan.needs)).dispatch(params, c.texture, settings.rays / 4);
     work.rays = 4 * static_cast<std::size_t>(c.texture.x) * static_cast<std::size_t>(c.texture.y);
     work.bytes = out.bytes();
     return work;

@@ -5,8 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numbers>
 #include <numeric>
+
+#include <glm/common.hpp>
 
 #include "core/device_error.h"
 #include "glsl/exact.h"
@@ -35,16 +38,28 @@ gl::BufferTexture sector_table(const ExactPlan& plan) {
     return gl::BufferTexture(GL_RGBA32F, table.data(), table.size() * sizeof(glm::vec4));
 }
 
+// No pixel's mean radiance is above that of the brightest source, colour by colour. With bounces there is no such bound.
+glm::vec4 most_light(const PackedOutline& outline, const Sky& sky, double radiance_scale, bool bounces) {
+    if (bounces) return glm::vec4(std::numeric_limits<float>::max());
+    Colour brightest = sky.radiance;
+    for (const SkyStop& stop : sky.gradient) brightest = glm::max(brightest, stop.radiance);
+    glm::vec4 most(glm::vec3(brightest / radiance_scale), 0.0f);
+    for (const glm::vec4& light : outline.lights_of) most = glm::max(most, light);
+    return most;
+}
+
 // Where the points of one level are listed, and how many of them.
 struct LevelPoints {
     std::size_t first = 0;        // in the list of points
     std::size_t of_tile = 0;      // room for each tile
     std::size_t first_count = 0;  // in the counters
+    std::size_t first_ask = 0;    // in the words of what is asked for
 
     void write_to(glsl::ExactParams& params) const {
         params.first_point = static_cast<int>(first);
         params.tile_points = static_cast<int>(of_tile);
         params.first_count = static_cast<int>(first_count);
+        params.first_ask = static_cast<int>(first_ask);
     }
 };
 
@@ -55,7 +70,7 @@ struct ExactPass::Band {
     glsl::ExactParams params{};
     gl::BufferTexture root_entries, root_lights, sectors, sky;
     gl::BufferTexture surfaces, materials;
-    gl::Texture2D value, slope_x, slope_y, state, leaf, lights;
+    gl::Texture2D value, slope_x, slope_y, leaf, lights;
     glm::ivec2 coarse_tiles{0};
     std::array<LevelPoints, kLevels> levels{};
     bool always_finishes = false;
@@ -74,7 +89,7 @@ ExactPass::ExactPass(const std::string& shader_dir)
 
 std::size_t ExactPass::bytes() const {
     return coarse_heads_.bytes() + coarse_entries_.bytes() + coarse_lights_.bytes() + heads_.bytes() + entries_.bytes() +
-           lights_.bytes() + points_.bytes() + counters_.bytes() + means_.bytes() + elements_.bytes() + elements_before_.bytes();
+           lights_.bytes() + points_.bytes() + asks_.bytes() + counters_.bytes() + means_.bytes() + elements_.bytes() + elements_before_.bytes();
 }
 
 gl::ComputeProgram& ExactPass::lists_for(const ExactPlan& exact) {
@@ -173,7 +188,9 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
         solver_for({outline.counts[2] > 0, outline.counts[3] > 0, params.sky_kind, level < kLevels - 1, plan.exact.bounces > 0, false});
     const int tiles = params.tiles.x * params.tiles.y;
     params.extent = {tiles, 1};
-    jobs_.bind_storage(glsl::kExactPointsStorage);
+    asks_.bind_texture(glsl::kExactAsksUnit);
+    points_.bind_storage(glsl::kExactPointsStorage);
+    jobs_.bind_storage(glsl::kExactJobsStorage);
     counters_.bind_storage(glsl::kExactCountersStorage);
     work.dispatches += gather_.dispatch(params, params.extent);
     band.value.bind_image(glsl::kExactValueImage, GL_READ_WRITE);
@@ -329,8 +346,7 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass
     settings.give(std::move(band.lights));
 }
 
-void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings,
-                    DeltaPass& delta, const Record& record, gl::Texture2D& out) {
+ExactPass::Band ExactPass::prepare(const Plan& plan, const Sky& sky) const {
     const ExactPlan& exact = plan.exact;
     const PackedOutline& outline = exact.outline;
     Band band;
@@ -341,7 +357,6 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         exact.sky_nodes > 0 ? sky_nodes(sky, exact.sky_nodes, plan.radiance_scale) : std::vector<glm::vec4>();
     band.sky = gl::BufferTexture(GL_RGBA32F, nodes.data(), nodes.size() * 16);
 
-    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.lit.size);
     glsl::ExactParams& params = band.params;
     params.canvas = plan.canvas;
     params.border = plan.grid.border;
@@ -357,6 +372,24 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
     params.floor_share = 0.05f;
     params.root_counts = {outline.counts[0], outline.counts[1], outline.counts[2], outline.counts[3]};
     params.root_lights = {outline.lights[0], outline.lights[1], outline.lights[2], outline.lights[3]};
+    return band;
+}
+
+std::vector<glm::vec4> ExactPass::surfaces(const Plan& plan, const Sky& sky, const PassSettings& settings, DeltaPass& delta, const Record& record) {
+    Band band = prepare(plan, sky);
+    bounce(plan, settings, delta, record, band);
+    std::vector<glm::vec4> elements(plan.exact.outline.surfaces.elements * glsl::kExactElementTexels);
+    elements_.read(0, elements.data(), elements.size() * sizeof(glm::vec4));
+    return elements;
+}
+
+void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings,
+                    DeltaPass& delta, const Record& record, gl::Texture2D& out) {
+    const ExactPlan& exact = plan.exact;
+    Band band = prepare(plan, sky);
+    glsl::ExactParams& params = band.params;
+    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.lit.size);
+    params.most = most_light(exact.outline, sky, plan.radiance_scale, exact.bounces > 0);
 
     if (exact.bounces > 0) bounce(plan, settings, delta, record, band);
     for (int row = 0; row < plan.canvas.y; row += exact.band_rows) {
@@ -375,10 +408,13 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         const std::size_t tiles = static_cast<std::size_t>(params.tiles.x) * static_cast<std::size_t>(params.tiles.y);
         std::size_t room = 0;
         for (std::size_t level = 0; level < kLevels; ++level) {
-            band.levels[level] = {room, exact_level_points(static_cast<int>(level)), glsl::kExactCountTiles + level * tiles};
+            band.levels[level] = {room, exact_level_points(static_cast<int>(level)), glsl::kExactCountTiles + level * tiles,
+                                  level * tiles * glsl::kExactTileRows};
             room += tiles * band.levels[level].of_tile;
         }
         points_ = at_least(std::move(points_), GL_R32UI, room * 4);
+        asks_ = at_least(std::move(asks_), GL_R32UI, kLevels * tiles * glsl::kExactTileRows * 4);
+        asks_.clear(kLevels * tiles * glsl::kExactTileRows * 4);
         jobs_ = at_least(std::move(jobs_), GL_R32UI, tiles * (1 + band.levels.back().of_tile / 4) * 4);
         std::vector<std::uint32_t> zero(glsl::kExactCountTiles + kLevels * tiles);
         for (std::size_t level = 0; level < kLevels; ++level)  // groups along y and z
@@ -392,9 +428,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         band.value = settings.take(GL_RGBA32F, grid);
         band.slope_x = settings.take(GL_RGBA32F, grid);
         band.slope_y = settings.take(GL_RGBA32F, grid);
-        band.state = settings.take(GL_R32UI, grid);
         band.leaf = settings.take(GL_R32UI, params.tiles * glsl::kExactTile);
-        band.state.clear(0);
         band.leaf.clear(glsl::kExactCell);
 
         const auto split = [&](int level, bool ask_first) {
@@ -403,10 +437,8 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             band.value.bind_image(glsl::kExactValueImage, GL_READ_ONLY);
             band.slope_x.bind_image(glsl::kExactSlopeXImage, GL_READ_ONLY);
             band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_ONLY);
-            band.state.bind_image(glsl::kExactStateImage, GL_READ_WRITE);
             band.leaf.bind_image(glsl::kExactLeafImage, GL_READ_WRITE);
-            points_.bind_storage(glsl::kExactPointsStorage);
-            counters_.bind_storage(glsl::kExactCountersStorage);
+            asks_.bind_storage(glsl::kExactAsksStorage);
             means_.bind_texture(glsl::kExactSkyUnit);
             heads_.bind_texture(glsl::kExactHeadsUnit);
             glsl::ExactParams p = params;
@@ -459,7 +491,6 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         settings.give(std::move(band.value));
         settings.give(std::move(band.slope_x));
         settings.give(std::move(band.slope_y));
-        settings.give(std::move(band.state));
         settings.give(std::move(band.leaf));
     }
 }

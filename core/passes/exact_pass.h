@@ -38,10 +38,14 @@ public:
     void run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings, DeltaPass& delta,
              const Record& record, gl::Texture2D& out);
 
+    // What surfaces shine with after all bounces: by element, as glsl/exact.h lays them out. For methods that sample.
+    std::vector<glm::vec4> surfaces(const Plan& plan, const Sky& sky, const PassSettings& settings, DeltaPass& delta, const Record& record);
+
     std::size_t bytes() const;
 
 private:
     struct Band;
+    Band prepare(const Plan& plan, const Sky& sky) const;
     PassWork make_lists(const Plan& plan, Band& band);
     PassWork solve(const Plan& plan, const DistanceField& field, Band& band, int level);
     // Lets the light bounce between surfaces: afterwards `elements_` tells what each shines with.
@@ -70,7 +74,7 @@ private:
     gl::ComputeProgram reflect_;
     gl::StorageBuffer coarse_heads_, coarse_entries_, coarse_lights_;
     gl::StorageBuffer heads_, entries_, lights_;
-    gl::StorageBuffer points_, jobs_, counters_, means_;
+    gl::StorageBuffer asks_, points_, jobs_, counters_, means_;
     gl::StorageBuffer elements_, elements_before_, change_;
 };
 

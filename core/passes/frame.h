@@ -40,6 +40,13 @@ inline gl::ShaderConstants scene_constants(const ProgramNeeds& needs) {
     return {{"kSceneEllipses", needs.ellipses ? 1 : 0}, {"kSceneOutlines", needs.outlines ? 1 : 0}, {"kSceneBitmaps", needs.bitmaps ? 1 : 0}};
 }
 
+// For programs that meet surfaces as well (glsl/lib/surface_light.glsl).
+inline gl::ShaderConstants surface_constants(const ProgramNeeds& needs, gl::ShaderConstants constants = {}) {
+    if (needs.surfaces) constants.emplace_back("kSceneSurfaces", 1);
+    return constants;
+}
+inline gl::ShaderConstants march_constants(const ProgramNeeds& needs) { return surface_constants(needs, scene_constants(needs)); }
+
 // What a pass reports of its run.
 struct PassWork {
     int dispatches = 0;

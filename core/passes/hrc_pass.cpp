@@ -101,7 +101,7 @@ PassWork HrcPass::pieces(const Plan& plan, const HrcQuadrant& q, const DistanceF
         field.distance.bind_texture(glsl::kCascadeDistanceUnit);
         field.material.bind_texture(glsl::kCascadeMaterialUnit);
         list.bind_texture(glsl::kHrcListUnit);
-        if (params.listed > 0) work.dispatches += trace_.of(scene_constants(plan.needs)).dispatch(params, params.extent, settings.rays);
+        if (params.listed > 0) work.dispatches += trace_.of(march_constants(plan.needs)).dispatch(params, params.extent, settings.rays);
         settings.give(std::move(list));
         settings.give(std::move(count));
     } else {

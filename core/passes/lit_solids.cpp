@@ -9,6 +9,7 @@
 
 #include "core/film/encode.h"
 #include "core/plan/nearest_free.h"
+#include "core/plan/skip.h"
 
 namespace penumbra {
 namespace {
@@ -22,11 +23,6 @@ Colour albedo_at(const Shape& shape, Point p) {
     const int x = std::clamp(int(place.x), 0, image.width - 1), y = std::clamp(int(place.y), 0, image.height - 1);
     const std::uint8_t* texel = &image.rgba[4 * (std::size_t(y) * std::size_t(image.width) + std::size_t(x))];
     return Colour(srgb_decoded(texel[0] / 255.0), srgb_decoded(texel[1] / 255.0), srgb_decoded(texel[2] / 255.0)) * bitmap->emission_scale;
-}
-
-bool reflects(const Shape& shape) {
-    const auto* bitmap = std::get_if<Bitmap>(&shape.geometry);
-    return bitmap != nullptr ? bitmap->as_albedo && bitmap->emission_scale > 0 : shape.albedo != Colour(0);
 }
 
 template <class T>

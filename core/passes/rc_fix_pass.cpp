@@ -70,7 +70,7 @@ PassWork RcFixPass::run(const Plan& plan, std::size_t level, const Sky& sky, con
 
     PassWork work;
     const std::size_t rays = upper == nullptr ? 4 : 16;
-    work.dispatches = (upper == nullptr ? last_ : joined_).of(scene_constants(plan.needs)).dispatch(params, c.texture, settings.rays / rays);
+    work.dispatches = (upper == nullptr ? last_ : joined_).of(march_constants(plan.needs)).dispatch(params, c.texture, settings.rays / rays);
     work.rays = rays * static_cast<std::size_t>(c.texture.x) * static_cast<std::size_t>(c.texture.y);
     work.bytes = out.bytes();
     return work;

@@ -19,7 +19,7 @@ public:
                  const PassSettings& settings, gl::Texture2D& out);
 
 private:
-    gl::ComputeProgram program_;
+    gl::ProgramForms program_;
 };
 
 }  // namespace penumbra

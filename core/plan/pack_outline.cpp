@@ -9,6 +9,8 @@
 #include <set>
 #include <unordered_map>
 
+#include "core/plan/closed.h"
+#include "core/plan/corners.h"
 #include "core/plan/pack.h"
 #include "core/reference/boundary.h"
 #include "core/reference/sky.h"
@@ -19,37 +21,6 @@ namespace penumbra {
 namespace {
 
 using reference::Piece;
-
-// Gives corners that are equal but for rounding the same single-precision coordinates.
-class Corners {
-public:
-    explicit Corners(const PixelFrame& frame) : frame_(frame) {}
-
-    glm::vec2 at(Point p) {
-        const glm::dvec2 px = frame_.point(p);
-        const std::int64_t x = cell(px.x), y = cell(px.y);
-        for (std::int64_t dy = -1; dy <= 1; ++dy) {
-            for (std::int64_t dx = -1; dx <= 1; ++dx) {
-                const auto found = seen_.find(key(x + dx, y + dy));
-                if (found == seen_.end()) continue;
-                for (const glm::dvec2 other : found->second)
-                    if (std::abs(other.x - px.x) < kSame && std::abs(other.y - px.y) < kSame) return glm::vec2(other);
-            }
-        }
-        seen_[key(x, y)].push_back(px);
-        return glm::vec2(px);
-    }
-
-private:
-    static constexpr double kSame = 1e-6;  // px
-    static std::int64_t cell(double v) { return static_cast<std::int64_t>(std::floor(v * 4096)); }
-    static std::uint64_t key(std::int64_t x, std::int64_t y) {
-        return static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15u + static_cast<std::uint64_t>(y);
-    }
-
-    const PixelFrame& frame_;
-    std::unordered_map<std::uint64_t, std::vector<glm::dvec2>> seen_;
-};
 
 enum class Kind { straight, disc, arc, ellipse };
 
@@ -160,6 +131,16 @@ public:
             };
             made_.nodes.push_back({glm::vec4(glm::vec2(place), glm::vec2(normal)), glm::vec2(end_of(i + 1) - end_of(i)), static_cast<std::uint32_t>(made_.elements) + static_cast<std::uint32_t>(i)});
         }
+        const int chords = reflects ? count : element_count(course, size_);
+        for (int i = 0; i < chords; ++i) {
+            const auto end_of = [&](int element) {
+                const double u = element_start(element, chords, course.whole);
+                if (!piece.is_arc) return glm::dvec2(ends.x, ends.y) * (1 - u) + glm::dvec2(ends.z, ends.w) * u;
+                return frame_.point(piece.at(piece.t0 + u * (piece.t1 - piece.t0)));
+            };
+            made_.chords.push_back({glm::vec4(glm::vec2(end_of(i)), glm::vec2(end_of(i + 1))),
+                                    static_cast<std::uint32_t>(made_.elements) + static_cast<std::uint32_t>(reflects ? i : 0)});
+        }
         made_.elements += static_cast<std::size_t>(count) + 1;
     }
 
@@ -264,6 +245,7 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
     const PixelFrame frame(scene.canvas);
     Corners corners(frame);
     const double scale = frame.pixels_per_unit;
+    out.dark_regions = dark_regions(boundary, frame);
     const auto vec = [](glm::dvec2 a, glm::dvec2 b) { return glm::vec4(glm::vec2(a), glm::vec2(b)); };
     out.smallest_light = smallest_light(boundary) * scale;
     out.smallest_body = smallest_body(boundary) * scale;

@@ -9,6 +9,7 @@
 
 #include <glm/vec4.hpp>
 
+#include "core/plan/dark_region.h"
 #include "core/plan/surfaces.h"
 #include "core/scene/scene.h"
 
@@ -25,6 +26,7 @@ struct PackedOutline {
     double smallest_light = 0;              // px: extent of the smallest body that emits; 0: none does
     double smallest_body = 0;               // px: extent of the smallest of all
     double mean_intervals = 0;              // of direction that a point tells apart, over a few points; when asked for
+    std::vector<DarkRegion> dark_regions;   // closed off from all light
     Surfaces surfaces;                      // empty unless they reflect
     std::size_t bytes() const { return 16 * (entries.size() + lights_of.size()); }
 };

@@ -9,12 +9,15 @@
 
 #include "core/device_error.h"
 #include "core/plan/choose.h"
+#include "core/plan/closed.h"
 #include "core/plan/pack.h"
 #include "core/plan/saving.h"
 #include "core/plan/skip.h"
 #include "core/plan/sky.h"
 #include "core/scene/words.h"
+#include "glsl/exact.h"
 #include "glsl/scene_records.h"
+#include "glsl/surface_records.h"
 
 namespace penumbra {
 namespace {
@@ -43,10 +46,11 @@ std::size_t tests_per_ray(const std::vector<Shape>& shapes) {
     return std::max<std::size_t>(tests, 1);
 }
 
-ReferencePlan plan_reference(const Scene& scene, const DeviceLimits& limits) {
+// `more`: tests at the end of a ray.
+ReferencePlan plan_reference(const Scene& scene, const DeviceLimits& limits, std::size_t more) {
     ReferencePlan plan;
     plan.rays = reference_rays(scene.render.quality);
-    plan.tests_per_ray = tests_per_ray(scene.shapes);
+    plan.tests_per_ray = tests_per_ray(scene.shapes) + more;
     // Half of what Mesa 22 allows an invocation, since a loop's last test may count as well. Where no limit was found it
     // holds too: an invocation that runs for seconds costs a GPU its context.
     constexpr std::size_t kMost = 65535 / 2;
@@ -60,13 +64,9 @@ ReferencePlan plan_reference(const Scene& scene, const DeviceLimits& limits) {
     return plan;
 }
 
-// Whether light bounces anywhere.
-bool reflects(const Scene& scene) {
+bool light_bounces(const Scene& scene) {
     if (scene.render.bounces == 0) return false;
-    return std::any_of(scene.shapes.begin(), scene.shapes.end(), [](const Shape& shape) {
-        const auto* bitmap = std::get_if<Bitmap>(&shape.geometry);
-        return bitmap != nullptr ? bitmap->as_albedo : shape.albedo != Colour(0);
-    });
+    return std::any_of(scene.shapes.begin(), scene.shapes.end(), [](const Shape& shape) { return reflects(shape); });
 }
 
 double brightest_emission(const Shape& shape) {
@@ -261,7 +261,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     plan.grid = plan_grid(scene.canvas);
     plan.method = scene.render.method;
     plan.method_reason = "asked for";
-    const bool reflecting = reflects(scene);
+    const bool reflecting = light_bounces(scene);
     const PixelRect region = scene.canvas.region_or_all();
     plan.shown = {{region.x, region.y}, {region.w, region.h}};
     plan.lit.first = glm::max(plan.shown.first - 1, glm::ivec2(0));
@@ -296,12 +296,9 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     PackedOutline outline;
     if (plan.method == "auto") {
         outline = pack_outline(scene, 1.0, true, most_surveyed_pieces(), reflecting);
-        if (reflecting && !(outline.fits && not_exact.empty()))
-            throw DeviceError("The scene is too dense for bounces, which only the method 'exact' has: " +
-                              (not_exact.empty() ? "its outline has more than " + std::to_string(most_surveyed_pieces()) + " pieces." : not_exact));
-        const MethodChoice choice = !not_exact.empty() ? MethodChoice{"hrc", not_exact}
-                                    : reflecting       ? MethodChoice{"exact", "surfaces reflect"}
-                                                       : choose_method(outline, scene.render.quality);
+        const MethodChoice choice = !not_exact.empty()            ? MethodChoice{"hrc", not_exact}
+                                    : reflecting && outline.fits ? MethodChoice{"exact", "surfaces reflect"}
+                                                                 : choose_method(outline, scene.render.quality);
         plan.method = choice.method;
         plan.method_reason = choice.reason;
         if (plan.method == "hrc" && !hrc_fits(scene, plan.canvas, limits)) {
@@ -358,14 +355,23 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
 
     const CascadeSettings settings = plan.bilinear_fix ? rc_fix_settings(scene.render.quality) : cascade_settings(scene.render.quality);
     if (brute_force)
-        plan.reference = plan_reference(scene, limits);
+        plan.reference = plan_reference(scene, limits, reflecting ? static_cast<std::size_t>(glsl::kMostSurfaceChords) : 0);
     else if (exact)
         plan.exact = plan_exact(scene, std::move(outline), plan.canvas, limits.software);
     else if (holographic)
         plan.hrc = plan_hrc(plan.canvas, scene.canvas.margin / scene.canvas.pixel_size(), hrc_settings(scene.render.quality));
     else
         plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
-    plan.exact.bounces = exact && reflecting ? scene.render.bounces : 0;
+    if (reflecting && !exact) {
+        // What surfaces shine with is solved, whatever the method; only what meets them is sampled.
+        outline = pack_outline(scene, 1.0, false, kMostPieces, true);
+        if (!outline.fits)
+            throw DeviceError("The scene is too dense for bounces: its outline has more than " + std::to_string(kMostPieces) + " pieces.");
+        plan.exact = plan_exact(scene, std::move(outline), plan.canvas, limits.software);
+        plan.exact.used = false;
+        plan.needs.surfaces = true;
+    }
+    plan.exact.bounces = reflecting ? scene.render.bounces : 0;
     plan.exact.converged = scene.render.converged ? scene.render.tolerance : 0;
     if (scene.render.bounces > 0 && !reflecting) leave_out("bounces", "no surface reflects", double(scene.render.bounces));
     plan.delta.lights = pack_lights(scene);
@@ -390,7 +396,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     // The beams of rc_fix's last cascade differ from the rays of those below it, so that another may not take its place.
     if (!plan.cascades.empty() && !plan.bilinear_fix && skip(Saving::levels)) {
         const bool dark_sky = brightest(scene.sky) <= 0;
-        const double levels = static_cast<double>(leave_out_far(plan.cascades, extent_of_shapes(scene, dark_sky), plan.grid.diagonal_px));
+        const double levels = static_cast<double>(leave_out_far(plan.cascades, extent_of_shapes(scene, dark_sky, reflecting), plan.grid.diagonal_px));
         if (levels > 0) leave_out("cascades", dark_sky ? "no light is as far away" : "no shape is as far away", 4.0 * pixels * levels / (settings.spacing_px * settings.spacing_px));
     }
     if (exact && !skip(Saving::cells)) plan.exact.settings.largest_cell = 1;
@@ -399,14 +405,21 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     if (!plan.resolve && !plan.cascades.empty())
         leave_out("resolve", "cascade 0 is the mean radiance of each pixel", pixels);
 
+    // Closed-off pixels are black, which they are as well where they count as solid: of a lamp without a size, or of a view, they are not.
+    const std::vector<DarkRegion>& dark = plan.exact.outline.dark_regions;
+    if (exact && !dark.empty() && !plan.delta.used() && scene.render.view == "final" && scene.output.solids == Solids::emission &&
+        !scene.output.auto_key && skip(Saving::closed)) {
+        plan.closed_tiles = tiles_within(dark, plan.canvas, glsl::kExactTile);
+        const double closed = double(plan.closed_tiles.size()) * glsl::kExactTile * glsl::kExactTile;
+        if (closed > 0) leave_out("closed-off pixels", "no light gets there", closed);
+    }
+    const bool interpolated = plan.hrc.active() ? !plan.hrc.aligned() : !plan.cascades.empty() && settings.spacing_px != 1.0;
+    plan.lone = interpolated && !plan.shape_slices.empty();
+
     std::size_t largest_area = area(plan.canvas);
     for (const CascadePlan& c : plan.cascades) largest_area = std::max(largest_area, area(c.texture));
     plan.half_floats = (!plan.cascades.empty() || plan.exact.used) && largest_area * 16 > kFullFloatBytes;
     if (plan.half_floats) plan.radiance_scale = peak > 0 ? peak : 1.0;
-    for (glm::vec4& light : plan.exact.outline.lights_of)
-        light = glm::vec4(glm::vec3(light) / static_cast<float>(plan.radiance_scale), light.a);
-    for (std::size_t i = 0; i < plan.exact.outline.surfaces.materials.size(); i += 2)
-        plan.exact.outline.surfaces.materials[i] /= static_cast<float>(plan.radiance_scale);
     const std::size_t texel = plan.half_floats ? 8 : 16;
     if (in_part) {
         keep_probes_near(plan.cascades, plan.lit);
@@ -429,6 +442,10 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     if (plan.exact.used) plan.gpu_bytes += area(plan.lit.size) * texel + exact_bytes(plan.exact, plan.canvas);
     if (plan.delta.used()) plan.gpu_bytes += 16 * area(plan.lit.size);
     if (plan.hrc.active()) fit_hrc(plan, peak, limits);
+    for (glm::vec4& light : plan.exact.outline.lights_of)
+        light = glm::vec4(glm::vec3(light) / static_cast<float>(plan.radiance_scale), light.a);
+    for (std::size_t i = 0; i < plan.exact.outline.surfaces.materials.size(); i += 2)
+        plan.exact.outline.surfaces.materials[i] /= static_cast<float>(plan.radiance_scale);
     return plan;
 }
 

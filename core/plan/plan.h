@@ -82,6 +82,7 @@ struct ProgramNeeds {
     bool ellipses = true;
     bool outlines = true;  // polylines and polygons
     bool bitmaps = true;
+    bool surfaces = false;  // that shine with light that bounced, as sampled rays meet them
 };
 
 struct Plan {
@@ -101,9 +102,11 @@ struct Plan {
     std::vector<CascadePlan> cascades;  // [0] is the nearest; empty when no light can arrive
     bool bilinear_fix = false;          // the cascades are those of `rc_fix`
     ReferencePlan reference;
-    ExactPlan exact;                    // of the method `exact`
+    ExactPlan exact;                    // of the method `exact`; of others, what surfaces shine with is found by it
     HrcPlan hrc;                        // inactive unless this method runs
     DeltaPlan delta;                    // point, spot and directional lights
+    std::vector<glm::ivec2> closed_tiles;  // first pixels of tiles of kExactTile px that no light reaches: taken for solid
+    bool lone = false;                  // pixels are interpolated between probes, which may all be inside of shapes
     bool resolve = false;               // false: cascade 0 already is the mean radiance per pixel
     bool half_floats = false;           // cascades in 16 bits, emission scaled to [0, 1]
     double radiance_scale = 1;          // emission is divided by this before it is packed

@@ -328,12 +328,17 @@ std::optional<ConstantLight> constant_light(const Scene& scene) {
     return ConstantLight{sky_mean(scene.sky, 0, 360), "there is only the sky: every pixel sees all of it"};
 }
 
-Extent extent_of_shapes(const Scene& scene, bool only_shining) {
+bool reflects(const Shape& shape) {
+    const auto* bitmap = std::get_if<Bitmap>(&shape.geometry);
+    return bitmap != nullptr ? bitmap->as_albedo && bitmap->emission_scale > 0 : shape.albedo != Colour(0);
+}
+
+Extent extent_of_shapes(const Scene& scene, bool only_shining, bool reflecting) {
     const Box domain = domain_of(scene.canvas);
     const Hulls hulls(scene.canvas);
     Extent extent;
     for (const Shape& shape : scene.shapes) {
-        if (only_shining && !shines(shape)) continue;
+        if (only_shining && !shines(shape) && !(reflecting && reflects(shape))) continue;
         const Hull hull = hulls.of(shape);
         const Box box = hull.box.grown(hull.rounding);
         if (!box.meets(domain)) continue;

@@ -30,12 +30,15 @@ std::optional<ConstantLight> constant_light(const Scene& scene);
 
 // Whether a shape's outline sends out light. A bitmap's texels are asked.
 bool shines(const Shape& shape);
+// Whether it gives back light that arrives.
+bool reflects(const Shape& shape);
 
 // The part of the domain, in pixels of the view, that holds every shape, or every one that shines; empty (x1 < x0) without any.
 struct Extent {
     double x0 = 1e300, y0 = 1e300, x1 = -1e300, y1 = -1e300;
     bool empty() const { return x1 < x0; }
 };
-Extent extent_of_shapes(const Scene& scene, bool only_shining);
+// With `reflecting`, what reflects shines.
+Extent extent_of_shapes(const Scene& scene, bool only_shining, bool reflecting = false);
 
 }  // namespace penumbra

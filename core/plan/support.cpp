@@ -9,8 +9,6 @@ Problems unsupported(const Scene& scene, const Features& features) {
         problems.push_back({std::move(pointer), "not_supported_yet", what + " not supported yet"});
     };
     if (scene.render.method == "hybrid") refuse("/render/method", "the method 'hybrid' is");
-    if (scene.render.bounces != 0 && scene.render.method != "auto" && scene.render.method != "exact")
-        refuse("/render/bounces", "bounces with the method '" + scene.render.method + "' are");
     const std::string& view = scene.render.view;
     if (view != "final" && view != "distance" && view != "normals" && view != "tiles")
         problems.push_back({"/render/view", "not_supported_yet",

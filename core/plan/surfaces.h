@@ -25,6 +25,12 @@ struct Surfaces {
         std::uint32_t element;
     };
     std::vector<Node> nodes;
+    // All that can be seen, as short straight pieces: a ray's end finds the element nearest to it (core/plan/surface_cells.h).
+    struct Chord {
+        glm::vec4 ends;  // px; free space on the right of the way from a to b, y down
+        std::uint32_t element;
+    };
+    std::vector<Chord> chords;
     std::size_t elements = 0;  // room for elements: those of all pieces, and one more each
 };
 

@@ -142,6 +142,7 @@ void fields(A& archive, Like<A, OutputSettings>& output) {
     // A depth that the format has not is its own.
     if constexpr (A::kReads) {
         archive(depth.emplace());
+        if (bit_depths_of(format).empty()) depth.reset();
     } else {
         archive(bit_depth_of(format, depth));
     }

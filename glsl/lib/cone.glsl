@@ -1,13 +1,10 @@
 // A sector of directions as one widening beam: what is narrower than the beam takes its share of it, where a ray as
 // thin as a line would meet it or not.
 #include "lib/march.glsl"
+#include "lib/intersect.glsl"
 
-// The share of a beam of width w along d through p that a convex shape covers, seen along the beam: its shadow across the
-// beam is an interval. Negative for shapes that are not known to be convex.
-float covered_share(int shape, int type, vec2 p, vec2 d, float w) {
-    vec4 a = texelFetch(shape_records, shape * kShapeTexels + 2);
-    vec4 b = texelFetch(shape_records, shape * kShapeTexels + 3);
-    vec2 across = vec2(-d.y, d.x);
+// A convex shape seen along a beam through p: its shadow across the beam is an interval.
+vec2 shape_shadow(int type, vec4 a, vec4 b, vec2 p, vec2 across) {
     vec2 turned = rotate_into(across, b.xy);
     vec2 middle = a.xy;
     float reach = a.z;  // circle
@@ -17,9 +14,34 @@ float covered_share(int shape, int type, vec2 p, vec2 d, float w) {
         middle = 0.5 * (a.xy + a.zw);
         reach = 0.5 * abs(dot(a.zw - a.xy, across)) + b.z;
     }
-    if (type == kShapePolyline || type == kShapePolygon || type == kShapeBitmap) return -1.0;
     float c = dot(middle - p, across);
-    return clamp((min(c + reach, 0.5 * w) - max(c - reach, -0.5 * w)) / w, 0.0, 1.0);
+    return vec2(c - reach, c + reach);
+}
+
+// The share of a beam of width w along d through p that a convex shape covers. Negative for shapes that are not known to be
+// convex.
+float covered_share(int shape, int type, vec2 p, vec2 d, float w) {
+    if (type == kShapePolyline || type == kShapePolygon || type == kShapeBitmap) return -1.0;
+    vec4 a = texelFetch(shape_records, shape * kShapeTexels + 2);
+    vec4 b = texelFetch(shape_records, shape * kShapeTexels + 3);
+    vec2 shadow = shape_shadow(type, a, b, p, vec2(-d.y, d.x));
+    return clamp((min(shadow.y, 0.5 * w) - max(shadow.x, -0.5 * w)) / w, 0.0, 1.0);
+}
+
+// What a shape shines with into a beam: where the middle of its share, seen along the beam, meets it.
+vec3 beam_light(int shape, int type, vec2 at, vec2 d, float t, float w, ivec2 border, vec3 emission, inout int budget) {
+    if (kSceneSurfaces == 0) return emission;
+    vec4 a = texelFetch(shape_records, shape * kShapeTexels + 2);
+    vec4 b = texelFetch(shape_records, shape * kShapeTexels + 3);
+    vec2 across = vec2(-d.y, d.x);
+    vec2 shadow = shape_shadow(type, a, b, at, across);
+    vec2 start = at - t * d + 0.5 * (max(shadow.x, -0.5 * w) + min(shadow.y, 0.5 * w)) * across;
+    float enters = kFar;
+    if (type == kShapeCircle) enters = enter_circle(start - a.xy, d, a.z);
+    if (type == kShapeRect) enters = enter_rounded_box(rotate_into(start - a.xy, b.xy), rotate_into(d, b.xy), a.zw, b.z);
+    if (type == kShapeLine) enters = enter_capsule(start, d, a, b.z);
+    if (type == kShapeEllipse) enters = enter_ellipse(rotate_into(start - a.xy, b.xy), rotate_into(d, b.xy), a.zw);
+    return surface_light(enters < kFar ? start + enters * d : at, d, border, emission, budget);
 }
 
 // Radiance met by a beam from p along d that is `width` wide at p and grows by `slope`; `passes` is the share of it that
@@ -33,6 +55,8 @@ void march_cone(vec2 p, vec2 d, float width, float slope, vec4 domain, ivec2 bor
     int beside = -1;           // the shape that the beam is passing
     float lowest = kFar;       // the axis' least distance to it so far
     float share = 0.0;         // covered where it was least
+    vec2 beside_at = p;        // the axis there
+    float beside_t = 0.0;
     bool approached = false;   // from here on: what is behind p is not met
     while (passes > 0.001) {
         ivec2 pixel = ivec2(0);
@@ -67,7 +91,10 @@ void march_cone(vec2 p, vec2 d, float width, float slope, vec4 domain, ivec2 bor
         if (beside >= 0 && (!near || shape != beside)) {
             // Past it: its share counts once, where the axis was nearest.
             if (approached) {
-                radiance += passes * share * shape_emission(beside, at);
+                vec3 light = shape_emission(beside, at);
+                if (kSceneSurfaces != 0)
+                    light = beam_light(beside, int(texelFetch(shape_records, beside * kShapeTexels).x), beside_at, d, beside_t, width + slope * beside_t, border, light, budget);
+                radiance += passes * share * light;
                 passes *= 1.0 - share;
             }
             beside = -1;
@@ -78,6 +105,7 @@ void march_cone(vec2 p, vec2 d, float width, float slope, vec4 domain, ivec2 bor
             bool met = now < 0.0 ? exact <= head.y : now > 0.999 && exact <= 0.0;
             if (met) {
                 vec3 light = shape_emission(shape, vec2(pixel - border) + 0.5);
+                if (kSceneSurfaces != 0) light = surface_light(at, d, border, light, budget);
                 if (now < 0.0 && type != kShapeBitmap) light *= texelFetch(shape_records, shape * kShapeTexels + 1).w;
                 radiance += passes * light;
                 passes = 0.0;
@@ -86,6 +114,8 @@ void march_cone(vec2 p, vec2 d, float width, float slope, vec4 domain, ivec2 bor
                 beside = shape;
                 lowest = exact;
                 share = now;
+                beside_at = at;
+                beside_t = t;
             }
         }
         // No shape is nearer than the distance at the pixel's centre allows; the one asked is known better.

@@ -8,7 +8,8 @@ const float kBehind = 1e9;  // key of what lies behind
 // overlaps.
 bvec4 both(bvec4 a, bvec4 b) { return bvec4(a.x && b.x, a.y && b.y, a.z && b.z, a.w && b.w); }
 bvec4 either(bvec4 a, bvec4 b) { return bvec4(a.x || b.x, a.y || b.y, a.z || b.z, a.w || b.w); }
-vec4 pick(vec4 no, vec4 yes, bvec4 which) { return mix(no, yes, which); }
+
+#include "lib/pick.glsl"
 
 vec4 px, py;
 vec2 axis, side;

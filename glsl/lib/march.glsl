@@ -2,6 +2,7 @@
 // filter costs half the accuracy: docs/decisions).
 #include "lib/domain.glsl"
 #include "lib/scene.glsl"
+#include "lib/surface_light.glsl"
 
 layout(binding = kCascadeDistanceUnit) uniform sampler2D distance_texture;
 layout(binding = kCascadeMaterialUnit) uniform isampler2D material_texture;
@@ -53,6 +54,19 @@ bool starts_inside(vec2 p, ivec2 border) {
     return shape_distance(shape, p, kFar) <= 0.0;
 }
 
+// A march may begin deep inside a shape, where a neighbouring probe's ends: back to the surface where a ray along d comes in.
+vec2 where_it_entered(vec2 at, vec2 d, ivec2 border, ivec2 last_pixel, inout int budget) {
+    const int most = 64;
+    int i = 0;
+    for (; i < most; ++i) {
+        float room = texelFetch(distance_texture, clamp(ivec2(floor(at)) + border, ivec2(0), last_pixel), 0).r;
+        if (room > -kHalfDiagonal) break;
+        at -= max(-room - kHalfDiagonal, kShortestStep) * d;
+    }
+    budget -= i + 1;
+    return at;
+}
+
 // Radiance met between start and end along the ray. Spends of the invocation's loop iterations.
 int march(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, inout int budget, out vec3 radiance) {
     radiance = vec3(0.0);
@@ -62,6 +76,7 @@ int march(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, ino
     ivec2 last_pixel = textureSize(distance_texture, 0) - 1;
     int hit = -1;
     vec2 hit_at = p;
+    vec2 end_at = p;
     int fate = kRayBlocked;
     while (budget > 0) {
         // The tight loop: free steps far from any surface. What is inside the outer loop alone is paid once per
@@ -93,6 +108,7 @@ int march(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, ino
             if (exact <= 0.0) {
                 hit = shape;
                 hit_at = vec2(pixel - border) + 0.5;
+                end_at = at;
                 break;
             }
             // Another shape may be nearer here than at the pixel's centre: stay within the pixel.
@@ -104,6 +120,7 @@ int march(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, ino
     if (hit < 0 && fate == kRayBlocked) ++lost_rays;
     if (hit >= 0) {
         radiance = shape_emission(hit, hit_at);
+        if (kSceneSurfaces != 0) radiance = surface_light(where_it_entered(end_at, d, border, last_pixel, budget), d, border, radiance, budget);
         if (int(texelFetch(shape_records, hit * kShapeTexels).x) != kShapeBitmap) radiance *= texelFetch(shape_records, hit * kShapeTexels + 1).w;
     }
     return fate;

@@ -1,5 +1,6 @@
 // The packed scene as functions: signed distance, membership, emission.
 #include "scene_records.h"
+#include "lib/pick.glsl"
 
 layout(binding = kShapeRecordsUnit) uniform samplerBuffer shape_records;
 layout(binding = kEdgesUnit) uniform samplerBuffer edges;
@@ -102,7 +103,7 @@ float shape_distance(int shape, vec2 p, float best) {
 }
 
 vec3 srgb_to_linear(vec3 c) {
-    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
+    return pick(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
 // Emission of a shape at p, in the units of the packed scene.

@@ -1,5 +1,7 @@
 // Tone curves and the sRGB curve. Input and output are linear; every curve maps 0 to 0 or nearly so.
 
+#include "lib/pick.glsl"
+
 vec3 tonemap_reinhard(vec3 c) { return c / (1.0 + c); }
 
 // Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, equation 4, per channel.
@@ -91,5 +93,5 @@ vec3 tonemap(vec3 c, float white) {
 
 // IEC 61966-2-1.
 vec3 srgb_encode(vec3 c) {
-    return mix(1.055 * pow(max(c, vec3(1e-10)), vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
+    return pick(1.055 * pow(max(c, vec3(1e-10)), vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
 }

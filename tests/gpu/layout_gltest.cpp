@@ -11,6 +11,7 @@
 #include "core/device_error.h"
 #include "core/gl/program.h"
 #include "glsl/cascade.h"
+#include "glsl/closed.h"
 #include "glsl/compose.h"
 #include "glsl/delta.h"
 #include "glsl/distance.h"
@@ -18,8 +19,10 @@
 #include "glsl/hrc.h"
 #include "glsl/jump.h"
 #include "glsl/loop_probe.h"
+#include "glsl/lone.h"
 #include "glsl/reference.h"
 #include "glsl/rc_fix.h"
+#include "glsl/lone.h"
 #include "glsl/resolve.h"
 #include "tests/gpu/shared_context.h"
 
@@ -71,10 +74,10 @@ Offsets exact_fields() {
             FIELD(ExactParams, first_count), FIELD(ExactParams, capacity), FIELD(ExactParams, continues),
             FIELD(ExactParams, light_scale), FIELD(ExactParams, tolerance), FIELD(ExactParams, kink_cell),
             FIELD(ExactParams, floor_share), FIELD(ExactParams, ask_first), FIELD(ExactParams, strict_dark),
-            FIELD(ExactParams, pad0), FIELD(ExactParams, pad1), FIELD(ExactParams, root_counts),
+            FIELD(ExactParams, first_ask), FIELD(ExactParams, pad1), FIELD(ExactParams, root_counts),
             FIELD(ExactParams, root_lights), FIELD(ExactParams, wide), FIELD(ExactParams, jobs),
             FIELD(ExactParams, list_origin), FIELD(ExactParams, window),
-            FIELD(ExactParams, fill_first), FIELD(ExactParams, fill_row), FIELD(ExactParams, pad7)};
+            FIELD(ExactParams, fill_first), FIELD(ExactParams, fill_row), FIELD(ExactParams, pad7), FIELD(ExactParams, most)};
 }
 
 Offsets delta_fields() {
@@ -129,6 +132,14 @@ std::vector<Layout> layouts() {
           FIELD(ResolveParams, tiles), FIELD(ResolveParams, texel), FIELD(ResolveParams, first_probe),
           FIELD(ResolveParams, spacing), FIELD(ResolveParams, aligned), FIELD(ResolveParams, first_pixel)},
          glsl::kResolveGroupX, glsl::kResolveGroupY},
+        {"closed.comp", sizeof(glsl::ClosedParams),
+         {FIELD(ClosedParams, origin), FIELD(ClosedParams, extent), FIELD(ClosedParams, canvas), FIELD(ClosedParams, border),
+          FIELD(ClosedParams, tile), FIELD(ClosedParams, pad0), FIELD(ClosedParams, pad1), FIELD(ClosedParams, pad2)},
+         glsl::kClosedGroupX, glsl::kClosedGroupY},
+        {"lone.comp", sizeof(glsl::LoneParams),
+         {FIELD(LoneParams, origin), FIELD(LoneParams, extent), FIELD(LoneParams, border), FIELD(LoneParams, first_pixel),
+          FIELD(LoneParams, domain), FIELD(LoneParams, sky)},
+         glsl::kLoneGroupX, glsl::kLoneGroupY},
         {"reference.comp", sizeof(glsl::ReferenceParams),
          {FIELD(ReferenceParams, origin), FIELD(ReferenceParams, extent), FIELD(ReferenceParams, border),
           FIELD(ReferenceParams, shape_count), FIELD(ReferenceParams, ray_count), FIELD(ReferenceParams, first_ray),

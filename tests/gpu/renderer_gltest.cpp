@@ -164,7 +164,7 @@ TEST(Statistics, NameEachPassWithItsSize) {
     std::vector<std::string> names;
     std::vector<std::string> expected = {"shape lists", "distance", "jump flood"};
     for (std::size_t level = plan.cascades.size(); level-- > 0;) expected.push_back("cascade " + std::to_string(level));
-    for (const char* name : {"resolve", "compose", "read"}) expected.push_back(name);
+    for (const char* name : {"resolve", "lone pixels", "compose", "read"}) expected.push_back(name);
     double sum = 0;
     for (const PassStats& pass : stats.passes) {
         names.push_back(pass.name);

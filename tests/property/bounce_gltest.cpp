@@ -162,6 +162,63 @@ TEST(Bounces, NothingIsDoneWhereNothingReflects) {
     EXPECT_TRUE(told);
 }
 
+// Every other method samples what the elements shine with: as near to the exact solver as its direct light is.
+TEST(Bounces, OfEveryMethodComeNearTheExactSolver) {
+    Scene scene = half_a_room();
+    scene.lights = {PointLight{{20.3, 60.2}, {4, 3, 2}}};
+    const auto errors = [&](int bounces, const ImageF& truth) {
+        scene.render.bounces = bounces;
+        return std::get<ErrorFigures>(error_figures(render_linear(scene), truth));
+    };
+    Scene unlit = scene;
+    const ImageF direct = reference::solve(unlit).image;
+    unlit.render.bounces = 3;
+    const ImageF bounced = reference::solve(unlit).image;
+    for (const char* method : {"rc", "rc_fix", "hrc", "reference"}) {
+        scene.render.method = method;
+        const ErrorFigures without = errors(0, direct), with = errors(3, bounced), missing = errors(0, bounced);
+        std::printf("%s: rel %.2e bias %+.2e; direct light alone %.2e %+.2e\n", method, *with.rel, *with.bias, *without.rel, *without.bias);
+        EXPECT_LT(*with.rel, std::max(*without.rel, 5e-3)) << method;
+        EXPECT_LT(std::abs(*with.bias), std::max(1.5 * std::abs(*without.bias), 8e-3)) << method;
+        EXPECT_GT(*missing.rel, 5 * *with.rel) << method << ": the bounces are a part of it that counts";
+    }
+}
+
+TEST(Bounces, OfEveryMethodFillAClosedFurnace) {
+    Scene scene = bouncing(furnace(0.5, 0.6), 2);
+    for (const char* method : {"rc", "rc_fix", "hrc", "reference"}) {
+        scene.render.method = method;
+        const ImageF picture = render_linear(scene);
+        const ImageF direct = render_linear(bouncing(scene, 0));
+        // Every surface shines alike: whatever a method loses of the direct light (rc: two parts in a hundred), it loses of all.
+        for (int y = 5; y < 35; ++y)
+            for (int x = 5; x < 43; ++x)
+                ASSERT_NEAR(picture.at(x, y)[1], direct.at(x, y)[1] * (1 + 0.6 + 0.36), 1e-3) << method << " at " << x << ", " << y;
+        EXPECT_NEAR(picture.at(24, 20)[1], 0.98, 0.02) << method;
+    }
+}
+
+// A wall thinner than a pixel is lit on one side: nothing of that may show on the other.
+TEST(Bounces, DoNotComeThroughThinWalls) {
+    Scene scene = canvas(64, 48);
+    const auto wall = [&](Point at, Point size, Colour albedo) { scene.shapes.push_back(mirror(Rect{at, size, 0, 0}, albedo)); };
+    wall({32, 2}, {64, 4}, Colour(0.8));
+    wall({32, 46}, {64, 4}, Colour(0.8));
+    wall({2, 24}, {4, 48}, Colour(0.8));
+    wall({62, 24}, {4, 48}, Colour(0.8));
+    wall({32.3, 24}, {0.6, 48}, Colour(0.9));
+    scene.shapes.push_back(shape(Circle{{14, 20}, 3}, Colour(2)));
+    for (const char* method : {"rc_fix", "hrc", "reference"}) {
+        scene.render.method = method;
+        const ImageF picture = render_linear(bouncing(scene, 4));
+        double dark = 0, lit = 0;
+        for (int y = 6; y < 42; ++y)
+            for (int x = 6; x < 58; ++x) (x < 32 ? lit : dark) += double(picture.at(x, y)[1]);
+        EXPECT_GT(lit, 100) << method;
+        EXPECT_LT(dark, 1e-3 * lit) << method;
+    }
+}
+
 TEST(Lamps, FallOffWithTheDistance) {
     Scene scene = canvas(64, 48);
     scene.lights = {PointLight{{20.5, 24.5}, {3, 2, 1}}};

@@ -128,6 +128,23 @@ TEST(Skip, IsHarmlessWithFewShapes) {
     expect_harmless(with(canvas(120, 110), {shape(Circle{{60.3, 54.2}, 4}, Colour(3, 2, 1)), shape(Line{{20, 20}, {40, 33}, 1.5})}), "a lamp in the middle");
 }
 
+TEST(Skip, IsHarmlessWithClosedOffRegions) {
+    Scene scene = canvas(120, 110);
+    scene.sky.radiance = {0.3, 0.5, 0.7};
+    // A room of strokes with a pillar, a ring, and a lit room beside.
+    scene.shapes = {shape(Polyline{{{8, 9}, {70, 12}, {66, 80}, {9, 77}}, 2.5, true}), shape(Rect{{30, 40}, {9, 14}, 20, 2}),
+                    shape(Polyline{{{76, 12}, {112, 12}, {112, 60}, {76, 60}}, 2, true}), shape(Circle{{95, 30}, 3}, Colour(4, 2, 1)),
+                    shape(Circle{{90, 100}, 4}, Colour(1, 2, 3))};
+    expect_harmless(scene, "a dark room and a lit one", {"exact"});
+    const RenderResult result = shared_renderer().render([&] {
+        Scene s = scene;
+        s.render.method = "exact";
+        return s;
+    }());
+    bool named = false;
+    for (const SkippedWork& one : result.stats.skipped) named = named || one.what == "closed-off pixels";
+    EXPECT_TRUE(named);
+}
 TEST(Skip, IsHarmlessOnRandomScenes) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_harmless(random_scene(seed, 30, 30), "random scene " + std::to_string(seed));
 }

@@ -194,7 +194,7 @@ reads_in_loops() {
 # numbers by which invocations claim room, and which no loop reads.
 rule_no_storage_buffer_reads() {
     files "$shaders" glsl | code | search '\<buffer +[A-Za-z_]+|\<buffer *\{|\<buffer *$' | grep -vE '\<writeonly\>' |
-        grep -vE '\<buffer +[A-Za-z_]*Counters *\{ *uint [a-z_]+\[\]; *\};' || true
+        grep -vE '\<buffer +[A-Za-z_]*(Counters|Bits) *\{ *uint [a-z_]+\[\]; *\};' || true
     files "$shaders" glsl | code | search '\<readonly\>[^;{]*\<buffer\>|\<buffer\>[^;{]*\<readonly\>'
     files "$shaders" glsl | reads_in_loops
 }

@@ -38,10 +38,11 @@ std::string folder() {
 struct Bound {
     double mean, most;
 };
-Bound bound_of(const Way& way) {
+Bound bound_of(const Way& way, const Scene& scene) {
     if (way.method == "exact") return way.quality == Quality::draft ? Bound{4e-3, 0.25} : way.quality == Quality::standard ? Bound{1e-3, 0.06} : Bound{1e-4, 0.02};
     if (way.method == "reference") return {0.02, 0.5};
-    return {0.1, 1.01};
+    // A canvas of a pixel or two is all edge.
+    return {std::min(scene.canvas.width, scene.canvas.height) < 4 ? 0.5 : 0.15, 1.01};
 }
 
 // What is wrong with this scene's picture; empty: nothing, or the method refused it in words.
@@ -59,7 +60,7 @@ std::string fault(const Scene& scene, const Way& way, const ImageF& truth, bool 
         hold(law, way, "mean of peak", off.of_peak, name);
         hold(law, way, "max of peak", off.max_of_peak, name);
     }
-    const Bound bound = bound_of(way);
+    const Bound bound = bound_of(way, scene);
     std::ostringstream text;
     if (off.of_peak > bound.mean) text << "off by " << off.of_peak << " of the brightest source in the mean, may be " << bound.mean;
     else if (off.max_of_peak > bound.most) text << "off by " << off.max_of_peak << " of the brightest source, may be " << bound.most;
@@ -136,8 +137,14 @@ TEST(Regressions, StayMended) {
     }
 }
 
-TEST(Random, MildScenes) { hunt("mild", mild_scene, 1, 30 * scale()); }
-TEST(Random, WildScenes) { hunt("wild", wild_scene, 1, 50 * scale()); }
+// PENUMBRA_STABILITY_FIRST_SEED=1000 looks at others.
+std::uint64_t first_seed() {
+    const char* text = std::getenv("PENUMBRA_STABILITY_FIRST_SEED");
+    return text != nullptr ? std::strtoull(text, nullptr, 10) : 1;
+}
+
+TEST(Random, MildScenes) { hunt("mild", mild_scene, first_seed(), 30 * scale()); }
+TEST(Random, WildScenes) { hunt("wild", wild_scene, first_seed(), 50 * scale()); }
 
 // The suite's own tools: the text of a scene gives the scene back, and shrinking finds what it is about.
 TEST(Tools, TheTextOfASceneGivesTheSamePicture) {

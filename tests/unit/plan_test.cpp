@@ -572,21 +572,16 @@ TEST(Unsupported, NamesEachKeyAndWhatItHolds) {
         EXPECT_NE(problems[0].message.find(named), std::string::npos) << problems[0].message;
     };
     expect_refused("/render/method", "'hybrid'", [](Scene& s) { s.render.method = "hybrid"; });
-    expect_refused("/render/bounces", "bounces with the method 'rc'", [](Scene& s) {
-        s.render.bounces = 1;
-        s.render.method = "rc";
-    });
     expect_refused("/render/view", "'probes'", [](Scene& s) { s.render.view = "probes"; });
     expect_refused("/output/tonemap", "'tony'", [](Scene& s) { s.output.tonemap = "tony"; });
 }
 
 TEST(Unsupported, NamesAllAtOnce) {
     Scene scene = scene_of(8, 8);
-    scene.render.bounces = 2;
     scene.render.method = "hybrid";
     scene.output.tonemap = "tony";
-    EXPECT_EQ(unsupported(scene).size(), 3u);
-    EXPECT_EQ(unsupported(scene, {.tone_lut = true}).size(), 2u);
+    EXPECT_EQ(unsupported(scene).size(), 2u);
+    EXPECT_EQ(unsupported(scene, {.tone_lut = true}).size(), 1u);
 }
 
 }  // namespace
