@@ -5,6 +5,7 @@
 
 #include "core/plan/choose.h"
 #include "core/plan/pack_outline.h"
+#include "core/plan/plan.h"
 #include "core/plan/skip.h"
 #include "core/plan/support.h"
 #include "core/scene/lower.h"
@@ -35,12 +36,62 @@ constexpr std::array<Row, kWorkKinds> kRows{{
     {"bounced", 932},
 }};
 
+// Outlines that cross are cut at every crossing, of which there can be as many as pairs of edges.
+constexpr std::size_t kMostEdges = 4000;
+constexpr double kMostTexels = 512.0 * 512.0;
+
 double area(glm::ivec2 size) { return double(size.x) * double(size.y); }
 
 std::size_t edges_of(const Shape& shape) {
     if (const auto* line = std::get_if<Polyline>(&shape.geometry)) return line->points.size();
     if (const auto* polygon = std::get_if<Polygon>(&shape.geometry)) return polygon->points.size();
     return 1;
+}
+
+std::size_t edges_of(const Scene& scene) {
+    std::size_t edges = 0;
+    for (const Shape& shape : scene.shapes) edges += edges_of(shape);
+    return edges;
+}
+
+double texels_of(const Scene& scene) {
+    double texels = 0;
+    for (const Shape& shape : scene.shapes) {
+        const auto* bitmap = std::get_if<Bitmap>(&shape.geometry);
+        if (bitmap && bitmap->image) texels += double(bitmap->image->width) * bitmap->image->height;
+    }
+    return texels;
+}
+
+double cpu_ms_of(const Price& price) {
+    double ms = 0;
+    for (std::size_t i = 0; i < kWorkKinds; ++i) ms += price.work[i] * kRows[i].cpu_us / 1000;
+    return ms;
+}
+
+// As if it were sampled by `hrc`, which `auto` takes where there is much.
+Price guess_of(const Scene& scene) {
+    constexpr double kPiecesOfPixel = 160, kStepsOfFlooding = 12;
+    Price price;
+    price.planned = false;
+    price.method = scene.render.method;
+    price.method_reason = "too large to be looked at before its turn";
+    const PixelRect shown = scene.canvas.region_or_all();
+    price.size = {shown.w, shown.h};
+    const double pixels = double(scene.canvas.width) * scene.canvas.height;
+    const GridPlan grid = plan_grid(scene.canvas);
+    const auto set = [&](Work work, double amount) { price.work[static_cast<std::size_t>(work)] = amount; };
+    set(Work::render, 1);
+    set(Work::pixels, pixels);
+    set(Work::grid_pixels, area(grid.size));
+    set(Work::shape_edges, double(edges_of(scene)));
+    if (texels_of(scene) > 0) set(Work::flood_pixels, area(grid.size) * kStepsOfFlooding);
+    if (price.method == "reference")
+        set(Work::tests, pixels * reference_rays(scene.render.quality) * double(edges_of(scene)));
+    else
+        set(Work::ray_pieces, pixels * kPiecesOfPixel);
+    price.cpu_ms = cpu_ms_of(price);
+    return price;
 }
 
 }  // namespace
@@ -51,6 +102,7 @@ Price price_of(const Scene& given, const DeviceLimits& limits) {
     Scene made;
     if (needs_lowering(given)) made = lowered(given);
     const Scene& asked = needs_lowering(given) ? made : given;
+    if (edges_of(asked) > kMostEdges || texels_of(asked) > kMostTexels) return guess_of(asked);
     std::vector<SkippedWork> skipped;
     const std::optional<Scene> lean = without_unseen_shapes(asked, skipped);
     const Scene& scene = lean ? *lean : asked;
@@ -89,11 +141,12 @@ Price price_of(const Scene& given, const DeviceLimits& limits) {
             add(Work::seen, lit * intervals);
             add(Work::asked, lit * intervals * pieces);
             add(Work::pieces, pieces);
-            add(Work::bounced, pieces * double(plan.exact.bounces));
         }
+        // Also of the methods that sample: what surfaces shine with is solved for all of them.
+        if (plan.exact.bounces > 0) add(Work::bounced, double(plan.exact.outline.pieces) * double(plan.exact.bounces));
         add(Work::light_tests, lit * double(plan.delta.lights.size()));
     }
-    for (std::size_t i = 0; i < kWorkKinds; ++i) price.cpu_ms += price.work[i] * kRows[i].cpu_us / 1000;
+    price.cpu_ms = cpu_ms_of(price);
     return price;
 }
 

@@ -9,7 +9,8 @@
 
 #include <glm/ext/vector_int2.hpp>
 
-#include "core/plan/plan.h"
+#include "core/plan/device_limits.h"
+#include "core/scene/scene.h"
 
 namespace penumbra {
 
@@ -38,12 +39,14 @@ struct Price {
     std::string method;
     std::string method_reason;
     glm::ivec2 size{0};
-    std::size_t device_bytes = 0;
+    bool planned = true;           // false: its outline is too large to be looked at before its turn, and this is a rough guess
+    std::size_t device_bytes = 0;  // 0 without a plan
     std::array<double, kWorkKinds> work{};
     double cpu_ms = 0;  // of all threads of llvmpipe on the machine of docs/benchmarks.md
 };
 
-// As make_plan(): throws DeviceError when the device cannot hold the picture. Takes about as long as planning the render.
+// As make_plan(): throws DeviceError when the device cannot hold the picture. Bounded, whatever the scene: some thousand edges and a
+// bitmap of some hundred texels a side are planned, of more only the amounts are counted.
 Price price_of(const Scene& scene, const DeviceLimits& limits);
 
 }  // namespace penumbra

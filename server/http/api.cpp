@@ -182,9 +182,8 @@ bool Api::let_in(const Endpoint& endpoint, const Request& request, Response& res
     if (config_.trust_forwarded_for) {
         if (const std::string entry = last_entry(joined(header_values(request, "X-Forwarded-For"))); !entry.empty()) exchange.client = entry;
     }
-    if (!endpoint.guarded || !config_.tokens.required() || endpoint.get == &Api::render_signed) {
-        if (endpoint.get != &Api::render_signed || request.method != "POST" || !config_.tokens.required()) return true;
-    }
+    const bool is_signed = endpoint.get == &Api::render_signed && request.method != "POST";  // which is checked by itself
+    if (!endpoint.guarded || !config_.tokens.required() || is_signed) return true;
     const auto headers = header_values(request, "Authorization");
     const auto name = headers.size() == 1 ? config_.tokens.name_of(headers[0]) : std::nullopt;
     if (!name) {

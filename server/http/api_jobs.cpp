@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kAccepted = 202;
 // How often a stream of events tells how far it is.
-constexpr std::chrono::milliseconds kBeat{400};
+constexpr std::chrono::milliseconds kBeat{300};
 constexpr std::string_view kPath = "/v1/jobs/";
 
 std::string time_text(std::chrono::system_clock::time_point time) {

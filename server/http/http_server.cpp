@@ -20,6 +20,8 @@ namespace {
 using httplib::Request;
 using httplib::Response;
 
+// Clients that keep coming while the service ends: after this they find nobody.
+constexpr std::chrono::seconds kBacklogTime{1};
 // Probes and one or two that scrape.
 constexpr std::size_t kOperators = 8;
 
@@ -108,7 +110,13 @@ public:
     int port() const { return port_; }
     bool listening() const { return listening_; }
     void drain() { server_.drain(); }
-    std::size_t streams() const { return api_.streams(); }
+    // The library would cut answers that come in parts, and reset connections that it has not taken on yet. Events of jobs end at
+    // once, animations with their last frame, or when the service ends all renders.
+    void finish_streams_and_backlog() {
+        const auto end = std::chrono::steady_clock::now() + kBacklogTime;
+        while (listening_ && server_.has_backlog() && std::chrono::steady_clock::now() < end) pause();
+        while (api_.streams() > 0) pause();
+    }
     void stop() {
         if (!thread_.joinable()) return;
         server_.drain();
@@ -117,6 +125,8 @@ public:
     }
 
 private:
+    static void pause() { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }
+
     std::string refuse_connection(Exchange& exchange) const {
         if (exchange.request_id.empty()) exchange.request_id = new_request_id();
         const HttpProblem problem = make_problem(kind_of(exchange.fault), "");
@@ -195,9 +205,7 @@ void HttpServer::stop() {
     // The operators' port tells until the end that it is stopping.
     impl_->operators.drain();
     impl_->clients.drain();
-    // The library would cut answers that come in parts. Events of jobs end at once, animations with their last frame, or
-    // when the service ends all renders.
-    while (impl_->clients.streams() > 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    impl_->clients.finish_streams_and_backlog();
     impl_->clients.stop();
     impl_->operators.stop();
 }

@@ -266,6 +266,8 @@ GuardedServer::GuardedServer(const GuardLimits& limits, ReadHeaders read_headers
 
 Exchange& GuardedServer::exchange() { return *t_exchange; }
 
+bool GuardedServer::has_backlog() const { return wait_for(svr_sock_, POLLIN, milliseconds(0)); }
+
 void GuardedServer::widen_backlog() { ::listen(svr_sock_, 1024); }
 
 bool GuardedServer::process_and_close_socket(socket_t socket) {

@@ -138,6 +138,8 @@ public:
     // Connections end after their present request. Called before stop().
     void drain() { draining_ = true; }
     bool draining() const { return draining_; }
+    // Whether connections wait that have not been taken on: closing the socket would reset them.
+    bool has_backlog() const;
     void widen_backlog();  // after binding: the library listens with a backlog of 5
 
 private:

@@ -94,7 +94,6 @@ namespace {
 // What can be had for less, the best first: lower qualities, then the cheapest sampled ones.
 std::vector<Scene> cheaper_than(const Scene& scene, const std::string& method) {
     std::vector<Scene> rungs;
-    const bool reflects = scene.render.bounces > 0;  // which `exact` alone can
     for (const Quality quality : {Quality::standard, Quality::draft}) {
         if (quality >= scene.render.quality) continue;
         Scene rung = scene;
@@ -102,7 +101,7 @@ std::vector<Scene> cheaper_than(const Scene& scene, const std::string& method) {
         rungs.push_back(std::move(rung));
     }
     for (const char* sampled : {"hrc", "rc"}) {
-        if (reflects || (method == sampled && scene.render.quality == Quality::draft)) continue;
+        if (method == sampled && scene.render.quality == Quality::draft) continue;
         Scene rung = scene;
         rung.render.method = sampled;
         rung.render.quality = Quality::draft;

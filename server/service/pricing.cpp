@@ -12,6 +12,8 @@ constexpr std::size_t kKnownScenes = 4096;
 constexpr double kFirstSpread = 0.7;
 // The same scene takes more or less the same time; a shared machine sees to it that it is not the same.
 constexpr double kLeastSpread = 0.2;
+// What was not planned may be anything.
+constexpr double kGuessSpread = 1.2;
 // A new figure's weight: some ten renders forget a busy neighbour.
 constexpr double kWeight = 0.1;
 constexpr double kLeastMs = 0.05;
@@ -19,6 +21,7 @@ constexpr double kLeastMs = 0.05;
 }  // namespace
 
 std::string Pricing::kind_of(const Price& price) {
+    if (!price.planned) return "unplanned " + price.method;
     return price.work[std::size_t(Work::grid_pixels)] == 0 && price.work[std::size_t(Work::rays)] == 0 ? "constant" : price.method;
 }
 
@@ -45,8 +48,9 @@ Pricing::Quote Pricing::quote(const std::string& key, const Scene& scene, const 
     known.spread = kFirstSpread;
     if (const auto found = experience_.find(kind_of(quote.price)); found != experience_.end()) known = found->second;
     quote.ms = std::max(quote.price.cpu_ms, kLeastMs) * std::exp(known.mean);
-    quote.low_ms = quote.ms * std::exp(-2 * std::max(known.spread, kLeastSpread));
-    quote.high_ms = quote.ms * std::exp(2 * std::max(known.spread, kLeastSpread));
+    const double spread = std::max(known.spread, quote.price.planned ? kLeastSpread : kGuessSpread);
+    quote.low_ms = quote.ms * std::exp(-2 * spread);
+    quote.high_ms = quote.ms * std::exp(2 * spread);
     return quote;
 }
 
