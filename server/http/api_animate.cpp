@@ -52,7 +52,9 @@ public:
     }
 
     RenderResponse next() {
-        while (frames_.size() < ahead_ && begun_ < count()) {
+        // The first alone: whatever is rendered beside it would delay it.
+        const std::size_t most = begun_ == 0 ? 1 : ahead_;
+        while (frames_.size() < most && begun_ < count()) {
             frames_.push_back(std::async(std::launch::async, [this, index = begun_] { return render(index); }));
             ++begun_;
         }
