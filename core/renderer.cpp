@@ -20,6 +20,7 @@
 #include "core/passes/delta_pass.h"
 #include "core/passes/distance_pass.h"
 #include "core/passes/exact_pass.h"
+#include "core/passes/floor_pass.h"
 #include "core/passes/hrc_pass.h"
 #include "core/passes/jump_flood_pass.h"
 #include "core/passes/rc_fix_pass.h"
@@ -65,6 +66,7 @@ struct Renderer::Impl {
           reference(options.shader_dir),
           exact(options.shader_dir),
           delta(options.shader_dir),
+          floor(options.shader_dir),
           compose(options.shader_dir) {
         if (options.tone_lut) compose.set_tone_lut(*options.tone_lut);
         const gl::ContextInfo& gl_info = context.info();
@@ -111,6 +113,7 @@ struct Renderer::Impl {
     ReferencePass reference;
     ExactPass exact;
     DeltaPass delta;
+    FloorPass floor;
     ComposePass compose;
     DeviceInfo info;
     DeviceLimits limits;
@@ -165,7 +168,7 @@ Pixels Renderer::Impl::constant_picture(const Plan& plan, const Scene& scene, GL
         open.output = scene.output;
         const gl::Texture2D lights = black_texel();
         const DistanceField field = DistancePass::empty_field(plan);
-        const FrameLight light{radiance, lights, field};
+        const FrameLight light{&radiance, &lights, field, false};
         compose.set_lit(black_texel());
         if (format == GL_RGBA32F) return compose.linear(plan, open, light, settings, plan.shown.first, pixel);
         LogAverage average;
@@ -314,9 +317,15 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     if (plan.reference.rays > 0)
         record.pass("reference", plan.lit.size,
                     [&] { return reference.run(plan, scene.sky, buffers, field, settings, radiance); });
-    if (plan.exact.used)
+    gl::Texture2D moment_x, moment_y;
+    if (plan.exact.used) {
+        ExactPass::Light found;
         exact.run(plan, scene.sky, field, settings, delta,
-                  [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, radiance);
+                  [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, found);
+        radiance = std::move(found.mean);
+        moment_x = std::move(found.moment_x);
+        moment_y = std::move(found.moment_y);
+    }
     if (plan.hrc.active()) radiance = render_hrc(plan, field, record);
     if (plan.resolve)
         record.pass("resolve", plan.lit.size, [&] {
@@ -328,16 +337,31 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         });
     if (plan.lone) record.pass("lone pixels", plan.lit.size, [&] { return lone.run(plan, scene.sky, field, settings, radiance); });
     gl::Texture2D lights;
-    if (plan.delta.used()) record.pass("lights", plan.lit.size, [&] { return delta.pixels(plan, field, settings, lights); });
+    // On a floor with relief lights without a size are added to what it sends up.
+    const bool lit_floor = plan.floor.relief && scene.output.solids != Solids::lit;
+    if (plan.delta.used() && !lit_floor) record.pass("lights", plan.lit.size, [&] { return delta.pixels(plan, field, settings, lights); });
     // Where there is no light one black texel stands for every pixel.
-    for (gl::Texture2D* texture : {&radiance, &lights}) {
+    for (gl::Texture2D* texture : {&radiance, &lights, &moment_x, &moment_y}) {
         if (!*texture) *texture = black_texel();
     }
-    const FrameLight light{radiance, lights, field};
+    const FrameLight arriving{&radiance, &lights, field, false};
     if (scene.output.solids == Solids::lit)
-        record.host("lit solids", plan.canvas, [&] { compose.set_lit(lit_solids(plan, scene, light)); });
+        record.host("lit solids", plan.canvas, [&] { compose.set_lit(lit_solids(plan, scene, arriving)); });
     else
         compose.set_lit(black_texel());
+    gl::Texture2D sent_up, black;
+    if (plan.floor.used) {
+        record.host("floor pictures", plan.lit.size, [&] { floor.prepare(plan, scene, settings); });
+        record.pass("floor", plan.lit.size, [&] { return floor.run(plan, {radiance, lights, moment_x, moment_y}, settings, sent_up); });
+        if (plan.delta.used() && plan.floor.relief)
+            record.pass("lights on floor", plan.lit.size, [&] {
+                floor.bind();
+                return delta.on_floor(plan, field, settings, sent_up);
+            });
+        floor.give_back(settings);
+        black = black_texel();
+    }
+    const FrameLight light = plan.floor.used ? FrameLight{&sent_up, &black, field, true} : arriving;
     const double exposure = linear ? 1.0 : exposure_of(plan, scene, light, record);
 
     Reader reader(plan.shown.size, format);
@@ -358,6 +382,9 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     settings.give(std::move(field.material));
     settings.give(std::move(radiance));
     settings.give(std::move(lights));
+    settings.give(std::move(moment_x));
+    settings.give(std::move(moment_y));
+    settings.give(std::move(sent_up));
 
     stats.passes = record.finish();
     stats.gpu_bytes = plan.gpu_bytes + buffers.bytes();

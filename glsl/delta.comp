@@ -1,7 +1,8 @@
-// Reads lists of what may stand between tiles and lights; adds to the mean radiance of each free pixel what its lights give:
-// irradiance across the beam over the full circle. One thread is one pixel.
+// Reads lists of what may stand between tiles and lights; writes what lights add to the mean radiance of each free pixel,
+// irradiance across the beam over the full circle; or adds what the floor sends up of them. One thread is one pixel.
 #version 430 core
 #include "delta.h"
+#include "floor.h"
 
 layout(local_size_x = kDeltaGroupX, local_size_y = kDeltaGroupY) in;
 layout(std140, binding = kDeltaParamsBinding) uniform Params { DeltaParams params; };
@@ -11,7 +12,19 @@ layout(binding = kDeltaEntriesUnit) uniform samplerBuffer entries;
 layout(binding = kDeltaLightsUnit) uniform samplerBuffer lights;
 layout(binding = kDeltaRadianceImage, rgba32f) uniform image2D radiance_image;
 
+// Which program this is: whether it adds what a floor sends up, which depends on where light comes from.
+const int kFloor = 1;
+
 #include "lib/delta.glsl"
+#include "lib/floor.glsl"
+
+vec3 sent_up(FloorPlace place, Arrival arrival) {
+    float far = length(arrival.way);
+    vec2 level = far > 0.0 ? arrival.way / far : vec2(0.0);
+    if (arrival.up > 0.0) return arrival.across * floor_beam(place, vec3(level * sqrt(max(1.0 - arrival.up * arrival.up, 0.0)), arrival.up));
+    vec3 mean = arrival.on_floor * 0.15915494309189535;
+    return floor_field(place, mean, mean * level.x, mean * level.y);
+}
 
 void main() {
     ivec2 at = params.origin + ivec2(gl_GlobalInvocationID.xy);
@@ -24,13 +37,15 @@ void main() {
     int list = (tile.y * params.tiles.x + tile.x) * params.lights;
     vec2 p = vec2(pixel) + 0.5;
     vec3 sum = vec3(0.0);
+    FloorPlace floor_place;
+    if (kFloor != 0) floor_place = floor_at(place);
     int end_light = room > 0.0 ? params.end_light : params.first_light;
     for (int light = params.first_light; light < end_light; ++light) {
         uvec4 head = texelFetch(heads, list + light);
         Arrival arrival = arrival_at(light, p, params.least_distance);
-        bool dark = head.x == kDeltaDark || all(equal(arrival.strength, vec3(0.0)));
-        if (!dark && !list_hides(head, p, arrival.way, arrival.end)) sum += arrival.strength;
+        bool dark = head.x == kDeltaDark || all(equal(arrival.on_floor, vec3(0.0)));
+        if (!dark && !list_hides(head, p, arrival.way, arrival.end)) sum += kFloor != 0 ? sent_up(floor_place, arrival) : arrival.on_floor * 0.15915494309189535;
     }
     vec4 radiance = params.adds != 0 ? imageLoad(radiance_image, place) : vec4(0.0, 0.0, 0.0, 1.0);
-    imageStore(radiance_image, place, radiance + vec4(sum * 0.15915494309189535, 0.0));
+    imageStore(radiance_image, place, radiance + vec4(sum, 0.0));
 }

@@ -18,15 +18,17 @@ const int kDeltaDistanceUnit = 4;
 const int kDeltaHeadsUnit = 5;    // RGBA32UI: one list of each tile and light
 const int kDeltaEntriesUnit = 6;  // RGBA32F: pieces of outline, as in glsl/exact.h
 const int kDeltaLightsUnit = 7;   // RGBA32F, kDeltaLightTexels a light:
-                                  //   position, kind, unused | intensity, unused | direction, inner, outer half angle (rad)
+                                  //   position, kind, height | intensity, tilt (rad) | direction, inner, outer half angle (rad)
 const int kDeltaJobsUnit = 12;    // R32UI: the tile of four nodes
 const int kDeltaNodesUnit = 15;   // RGBA32F: as in glsl/exact.h
 
 const int kDeltaLightTexels = 3;
-// Kinds of lights. A directional light's position is the direction towards it.
+// Kinds of lights. A directional light's position is the direction towards it; its height and tilt are the sine and the cosine of
+// its elevation.
 const int kDeltaPoint = 0;
 const int kDeltaSpot = 1;
 const int kDeltaDirectional = 2;
+const int kDeltaRaised = 4;       // added to a kind: of the world above the canvas, where light falls with the square
 
 const int kDeltaRadianceImage = 0;
 const int kDeltaNodeRow = 1024;  // kExactNodeRow

@@ -74,23 +74,28 @@ void main() {
     vec2 centre = vec2(at.x, row) * float(params.tile_px) + 0.5 * float(params.tile_px) + 0.5 + vec2(params.list_origin);
 
     vec4 head = texelFetch(lights, kDeltaLightTexels * light);
-    vec2 way = int(head.z) == kDeltaDirectional ? head.xy : head.xy - centre;
+    int kind = int(head.z) & 3;
+    bool raised = (int(head.z) & kDeltaRaised) != 0;
+    vec2 way = kind == kDeltaDirectional ? head.xy : head.xy - centre;
     float distance_to = length(way);
     ahead = distance_to > 0.0 ? way / distance_to : vec2(1.0, 0.0);
     wide = half_tile * (abs(ahead.x) + abs(ahead.y));
     deep = wide;
     // A light in the tile, or near it, may lie in any direction: then only what is not far counts.
-    bool within = int(head.z) != kDeltaDirectional && distance_to < 1.01 * deep + 1.0;
-    away = int(head.z) == kDeltaDirectional || within ? 0.0 : distance_to;
+    bool within = kind != kDeltaDirectional && distance_to < 1.01 * deep + 1.0;
+    away = kind == kDeltaDirectional || within ? 0.0 : distance_to;
     taper = away > 0.0 ? inversesqrt(wide * wide + (away - deep) * (away - deep)) : 1.0;
 
     bool dark = false;
-    if (int(head.z) == kDeltaSpot) {
+    if (kind == kDeltaSpot) {
         // No point of the tile lies in the beam.
         vec4 spot = texelFetch(lights, kDeltaLightTexels * light + 2);
+        float tilt = raised ? texelFetch(lights, kDeltaLightTexels * light + 1).w : 0.0;
+        vec3 axis = vec3(spot.xy * cos(tilt), -sin(tilt));
+        vec3 from = vec3(-way, raised ? -head.w : 0.0);
         float reach = 1.4143 * half_tile;
-        float off = abs(atan(cross2(spot.xy, -way), dot(spot.xy, -way)));
-        dark = distance_to > reach && off - asin(min(reach / distance_to, 1.0)) > spot.w + 1e-3;
+        float off = atan(length(cross(axis, from)), dot(axis, from));
+        dark = length(from) > reach && off - asin(min(reach / length(from), 1.0)) > spot.w + 1e-3;
     }
 
     uvec4 counts = uvec4(params.root_counts);

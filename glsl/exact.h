@@ -75,8 +75,9 @@ const uint kExactTooLong = 0x7fffffffu;  // a list has more entries than its hea
 // An element's texels: integral of radiance from u = 0 to its start, u there | mean radiance, size in u |
 // change of radiance across it, unused.
 // A node's texels: place, outward normal | element, its extent as a vector, unused.
-// A material's texels: emission, first element | half the albedo, elements as above.
+// A material's texels: emission at u = 0 | its change up to u = 1 | half the albedo.
 const int kExactElementTexels = 3;
+const int kExactMaterialTexels = 3;
 const int kExactNodeRow = 1024;       // nodes in a row of the images that they are solved in
 // Units of the reflection, which needs no lists.
 const int kExactMaterialsUnit = 5;

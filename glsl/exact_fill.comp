@@ -12,6 +12,9 @@ layout(binding = kExactSlopeYImage, rgba32f) readonly uniform image2D slope_y_im
 layout(binding = kExactLeafImage, r32ui) readonly uniform uimage2D leaf_image;
 layout(binding = kExactRadianceImage) writeonly uniform image2D radiance_image;
 
+// Which program this is: whether values may be negative.
+const int kSigned = 0;
+
 void main() {
     ivec2 texel = params.origin + ivec2(gl_GlobalInvocationID.xy);
     if (texel.x >= params.extent.x || texel.y >= params.extent.y) return;
@@ -38,7 +41,7 @@ void main() {
                          imageLoad(slope_y_image, from).rgb * away.y);
             sum += w.x * w.y * value;
         }
-        sum = clamp(sum, vec3(0.0), params.most.rgb);
+        if (kSigned == 0) sum = clamp(sum, vec3(0.0), params.most.rgb);
     }
     imageStore(radiance_image, texel + ivec2(0, params.fill_row), vec4(sum, 1.0));
 }

@@ -32,6 +32,7 @@ const int kSky = 2;       // 0: none, 1: constant, 2: nodes around the circle
 const int kSlopes = 1;    // slopes and signatures are asked for
 const int kSurfaces = 1;  // pieces shine differently from place to place: they reflect
 const int kNodes = 1;     // points are elements of surfaces, and what is asked for is their irradiance
+const int kMoment = 0;    // what radiance is weighted by: 0: nothing; 1, 2: the direction's x, y
 
 const float kLookAhead = 1e-4;  // pieces that start at one corner are told apart a little further on
 const float kTwoPi = 6.283185307179586;
@@ -82,7 +83,12 @@ void sky_at(float angle, out vec3 integral, out vec3 radiance) {
     vec3 here = texelFetch(sky_nodes, 2 * node + 1).rgb;
     vec3 there = texelFetch(sky_nodes, 2 * node + 3).rgb;
     vec3 total = texelFetch(sky_nodes, 2 * params.sky_nodes).rgb;
-    integral = total * turns + before + step * f * (here + 0.5 * f * (there - here));
+    vec3 within = step * f * (here + 0.5 * f * (there - here));
+    // The table of a moment holds the integral with the direction; so narrow a part has one direction.
+    float middle = step * (float(node) + 0.5 * f);
+    if (kMoment == 1) within *= cos(middle);
+    if (kMoment == 2) within *= sin(middle);
+    integral = total * turns + before + within;
     radiance = mix(here, there, f);
 }
 
@@ -251,7 +257,7 @@ void change(bvec4 changed, float sector_angle) {
         vec4 turn = inverse / max(pick(start_depth, top_end_depth, ends), vec4(1e-6));
         vec4 weight = pick(vec4(0.0), turn, both(changed, notEqual(top, vec4(kUnknown))));
         vec4 jr = top_r - r, jg = top_g - g, jb = top_b - b;
-        add_slopes(jr, jg, jb, now, weight);
+        add_slopes(jr, jg, jb, now, kMoment != 0 ? weight * direction_of(now) : weight);
         vec4 size = max(max(abs(jr), abs(jg)), abs(jb));
         vec4 closeness = max(turn, 1.0 / max(pick(clearance, top_clearance, ends), vec4(1e-6)));
         third += pick(vec4(0.0), size * closeness * closeness * closeness, greaterThan(weight, vec4(0.0)));

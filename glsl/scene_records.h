@@ -23,9 +23,11 @@ const int kShapeBitmap = 6;
 //   1: emission rgb, emission scale (bitmap) or marched light's factor (others)
 //   2: circle cx cy r -   ellipse cx cy rx ry   rect cx cy hx hy   line x0 y0 x1 y1
 //      polyline, polygon: bounding box x0 y0 x1 y1   bitmap x y w h
-//   3: ellipse cos sin - -   rect cos sin corner -   line, polyline - - half width -
+//   3: ellipse cos sin - -   rect cos sin corner -   line, polyline: stops of its gradient, first texel of it, half width, -
 //      bitmap: first texel, texels across, texels down, alpha threshold
 const int kShapeTexels = 4;
+// A stroke's gradient stands among the edges: of a polyline, a texel for each of its edges with the shares of the stroke's length at
+// which it starts and ends; then the stops, emission rgb and share. A stroke without one has no stops.
 
 // Newton steps of the distance to an ellipse; the plan counts them where loops are bounded.
 const int kEllipseIterations = 12;

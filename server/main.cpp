@@ -18,6 +18,8 @@ int main(int argc, char** argv) {
         add_compare_command,
         add_bench_command,
         add_sign_url_command,
+        add_worker_command,
+        add_submit_command,
         add_worker_process_command,
     };
     limit_render_threads_to_cpu_quota();

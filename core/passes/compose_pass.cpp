@@ -35,10 +35,11 @@ glsl::ComposeParams params_of(const Plan& plan, const Scene& scene, const FrameL
     params.radiance_scale = static_cast<float>(plan.radiance_scale);
     params.first_pixel = first;
     // hrc finds the light of the whole canvas.
-    params.first_lit = plan.hrc.active() ? glm::ivec2(0) : plan.lit.first;
+    params.first_lit = plan.hrc.active() && !light.of_floor ? glm::ivec2(0) : plan.lit.first;
+    if (light.of_floor) params.floor_albedo = glm::vec4(glm::vec3(static_cast<float>(1 / plan.radiance_scale)), 1.0f);
     params.has_shapes = scene.shapes.empty() ? 0 : 1;
-    light.radiance.bind_texture(glsl::kComposeRadianceUnit);
-    light.lights.bind_texture(glsl::kComposeLightsUnit);
+    light.radiance->bind_texture(glsl::kComposeRadianceUnit);
+    light.lights->bind_texture(glsl::kComposeLightsUnit);
     light.field.distance.bind_texture(glsl::kComposeDistanceUnit);
     light.field.material.bind_texture(glsl::kComposeMaterialUnit);
     out.bind_image(glsl::kComposeImageBinding, GL_WRITE_ONLY);

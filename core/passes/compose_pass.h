@@ -14,9 +14,10 @@ namespace penumbra {
 
 // What a picture is composed of.
 struct FrameLight {
-    const gl::Texture2D& radiance;  // mean radiance
-    const gl::Texture2D& lights;    // what lights without a size add to it
+    const gl::Texture2D* radiance;  // mean radiance
+    const gl::Texture2D* lights;    // what lights without a size add to it
     const DistanceField& field;
+    bool of_floor = false;          // the radiance is what the floor sends up, of plan.lit; there is nothing to add or multiply
 };
 
 // Reads light, distance and material, with the scene buffers bound. Writes the picture: rgba8 or rgba16 for display (coverage, exposure,

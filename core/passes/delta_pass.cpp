@@ -109,16 +109,25 @@ int DeltaPass::in_slices(const Lists& lists, int samples, glsl::DeltaParams para
     for (int light = 0; light < params.lights; light += slice) {
         params.first_light = light;
         params.end_light = std::min(light + slice, params.lights);
-        params.adds = light > 0 ? 1 : 0;
         dispatches += dispatch(params);
+        params.adds = 1;
     }
     return dispatches;
 }
 
 PassWork DeltaPass::pixels(const Plan& plan, const DistanceField& field, const PassSettings& settings, gl::Texture2D& out) {
-    PassWork work;
     out = settings.take(GL_RGBA32F, plan.lit.size);
+    return run(plan, field, settings, out, false);
+}
+
+PassWork DeltaPass::on_floor(const Plan& plan, const DistanceField& field, const PassSettings& settings, gl::Texture2D& sent) {
+    return run(plan, field, settings, sent, true);
+}
+
+PassWork DeltaPass::run(const Plan& plan, const DistanceField& field, const PassSettings& settings, gl::Texture2D& out, bool on_floor) {
+    PassWork work;
     work.bytes = out.bytes();
+    gl::ComputeProgram& program = pixels_.of({{"kFloor", on_floor ? 1 : 0}, {"kGloss", on_floor && plan.floor.gloss ? 1 : 0}});
     const std::size_t of_row = static_cast<std::size_t>(divided_up(plan.lit.size.x, glsl::kDeltaTile)) * static_cast<std::size_t>(plan.delta.size());
     const int rows = kCoarseTile * static_cast<int>(std::clamp<std::size_t>(kMostLists / (4 * of_row), 1, 1 << 12));
     for (int row = 0; row < plan.lit.size.y; row += rows) {
@@ -127,10 +136,11 @@ PassWork DeltaPass::pixels(const Plan& plan, const DistanceField& field, const P
         work.dispatches += make_lists(plan, plan.lit.first + glm::ivec2(0, row), area, lists);
         lists.params.first_row = row;
         lists.params.extent = area;
+        lists.params.adds = on_floor ? 1 : 0;
         out.bind_image(glsl::kDeltaRadianceImage, GL_READ_WRITE);
         field.distance.bind_texture(glsl::kDeltaDistanceUnit);
         work.dispatches += in_slices(lists, 1, lists.params, [&](const glsl::DeltaParams& p) {
-            return pixels_.dispatch(p, p.extent, settings.pixels / static_cast<std::size_t>(1 + (p.end_light - p.first_light) / 4));
+            return program.dispatch(p, p.extent, settings.pixels / static_cast<std::size_t>(1 + (p.end_light - p.first_light) / 4));
         });
     }
     work.rays = static_cast<std::size_t>(plan.lit.size.x) * static_cast<std::size_t>(plan.lit.size.y) * static_cast<std::size_t>(plan.delta.size());

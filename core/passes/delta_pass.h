@@ -20,6 +20,9 @@ public:
     // Reads the distance. Writes what the lights add to the mean radiance of each free pixel, rgba32f, of plan.lit.
     PassWork pixels(const Plan& plan, const DistanceField& field, const PassSettings& settings, gl::Texture2D& out);
 
+    // Adds to what the floor sends up what it sends up of the lights; the textures of the floor are bound (FloorPass).
+    PassWork on_floor(const Plan& plan, const DistanceField& field, const PassSettings& settings, gl::Texture2D& sent);
+
     // Writes the irradiance of the elements of surfaces into an image of kDeltaNodeRow columns. `jobs` and `nodes` as
     // glsl/exact.h has them, for tiles of kDeltaTile from `origin` on.
     struct SurfacePart {
@@ -32,11 +35,14 @@ public:
 
 private:
     struct Lists;
+    PassWork run(const Plan& plan, const DistanceField& field, const PassSettings& settings, gl::Texture2D& out, bool on_floor);
     int make_lists(const Plan& plan, glm::ivec2 origin, glm::ivec2 area, Lists& lists);
     template <class Dispatch>
     int in_slices(const Lists& lists, int samples, glsl::DeltaParams params, const Dispatch& dispatch);
 
-    gl::ComputeProgram lists_, pixels_, nodes_;
+    gl::ComputeProgram lists_;
+    gl::ProgramForms pixels_;
+    gl::ComputeProgram nodes_;
     gl::StorageBuffer coarse_heads_, coarse_entries_, heads_, entries_, counters_;
 };
 

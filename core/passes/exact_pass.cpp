@@ -12,22 +12,11 @@
 #include <glm/common.hpp>
 
 #include "core/device_error.h"
+#include "core/passes/exact_band.h"
 #include "glsl/exact.h"
 
 namespace penumbra {
 namespace {
-
-constexpr int kLevels = 4;  // cells of 8, 4, 2 and 1 pixels
-
-// Iterations that the solver spends on one point in one dispatch at most (exact_solve.comp).
-constexpr std::uint64_t kMostWork = 30'000;
-
-int divided_up(int a, int b) { return (a + b - 1) / b; }
-
-gl::StorageBuffer at_least(gl::StorageBuffer buffer, GLenum format, std::size_t bytes) {
-    if (buffer && buffer.bytes() >= bytes) return buffer;
-    return gl::StorageBuffer(format, bytes);
-}
 
 gl::BufferTexture sector_table(const ExactPlan& plan) {
     std::vector<glm::vec4> table;
@@ -38,9 +27,10 @@ gl::BufferTexture sector_table(const ExactPlan& plan) {
     return gl::BufferTexture(GL_RGBA32F, table.data(), table.size() * sizeof(glm::vec4));
 }
 
-// No pixel's mean radiance is above that of the brightest source, colour by colour. With bounces there is no such bound.
-glm::vec4 most_light(const PackedOutline& outline, const Sky& sky, double radiance_scale, bool bounces) {
-    if (bounces) return glm::vec4(std::numeric_limits<float>::max());
+// No pixel's mean radiance is above that of the brightest source, colour by colour. Where pieces shine differently from place to place
+// no such bound is kept.
+glm::vec4 most_light(const PackedOutline& outline, const Sky& sky, double radiance_scale, bool surfaces) {
+    if (surfaces) return glm::vec4(std::numeric_limits<float>::max());
     Colour brightest = sky.radiance;
     for (const SkyStop& stop : sky.gradient) brightest = glm::max(brightest, stop.radiance);
     glm::vec4 most(glm::vec3(brightest / radiance_scale), 0.0f);
@@ -48,34 +38,7 @@ glm::vec4 most_light(const PackedOutline& outline, const Sky& sky, double radian
     return most;
 }
 
-// Where the points of one level are listed, and how many of them.
-struct LevelPoints {
-    std::size_t first = 0;        // in the list of points
-    std::size_t of_tile = 0;      // room for each tile
-    std::size_t first_count = 0;  // in the counters
-    std::size_t first_ask = 0;    // in the words of what is asked for
-
-    void write_to(glsl::ExactParams& params) const {
-        params.first_point = static_cast<int>(first);
-        params.tile_points = static_cast<int>(of_tile);
-        params.first_count = static_cast<int>(first_count);
-        params.first_ask = static_cast<int>(first_ask);
-    }
-};
-
 }  // namespace
-
-// What the steps of one frame share.
-struct ExactPass::Band {
-    glsl::ExactParams params{};
-    gl::BufferTexture root_entries, root_lights, sectors, sky;
-    gl::BufferTexture surfaces, materials;
-    gl::Texture2D value, slope_x, slope_y, leaf, lights;
-    glm::ivec2 coarse_tiles{0};
-    std::array<LevelPoints, kLevels> levels{};
-    bool always_finishes = false;
-    glm::ivec2 area{0};  // px that its lists cover
-};
 
 ExactPass::ExactPass(const std::string& shader_dir)
     : shader_dir_(shader_dir),
@@ -108,7 +71,8 @@ gl::ComputeProgram& ExactPass::solver_for(const Needs& needs) {
                                            {"kSky", needs.sky},
                                            {"kSlopes", needs.slopes ? 1 : 0},
                                            {"kSurfaces", needs.surfaces ? 1 : 0},
-                                           {"kNodes", needs.nodes ? 1 : 0}};
+                                           {"kNodes", needs.nodes ? 1 : 0},
+                                           {"kMoment", needs.moment}};
     return solvers_.emplace(needs, gl::ComputeProgram("exact_solve.comp", sizeof(glsl::ExactParams), shader_dir_, constants)).first->second;
 }
 
@@ -178,14 +142,14 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
     return work;
 }
 
-PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& band, int level) {
+PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& band, int level, int moment) {
     PassWork work;
     glsl::ExactParams params = band.params;
     params.level = level;
     band.levels[static_cast<std::size_t>(level)].write_to(params);
     const PackedOutline& outline = plan.exact.outline;
     gl::ComputeProgram& program =
-        solver_for({outline.counts[2] > 0, outline.counts[3] > 0, params.sky_kind, level < kLevels - 1, plan.exact.bounces > 0, false});
+        solver_for({outline.counts[2] > 0, outline.counts[3] > 0, params.sky_kind, level < kLevels - 1, plan.exact.surfaces, false, moment});
     const int tiles = params.tiles.x * params.tiles.y;
     params.extent = {tiles, 1};
     asks_.bind_texture(glsl::kExactAsksUnit);
@@ -198,21 +162,21 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
     band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_WRITE);
     field.distance.bind_texture(glsl::kExactDistanceUnit);
     points_.bind_texture(glsl::kExactPointsUnit);
-    run_solver(params, band, work, [&](const glsl::ExactParams& p) {
+    run_solver(params, band, work, moment, [&](const glsl::ExactParams& p) {
         program.dispatch_indirect(p, 4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1));
     });
     return work;
 }
 
 // Dispatches until every point is done: one whose loops have spent their iterations goes on in the next.
-void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work,
+void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work, int moment,
                            const std::function<void(const glsl::ExactParams&)>& dispatch) {
     heads_.bind_texture(glsl::kExactHeadsUnit);
     entries_.bind_texture(glsl::kExactEntriesUnit);
     lights_.bind_texture(glsl::kExactLightsUnit);
     jobs_.bind_texture(glsl::kExactJobsUnit);
     band.sectors.bind_texture(glsl::kExactSectorsUnit);
-    band.sky.bind_texture(glsl::kExactSkyUnit);
+    band.sky[static_cast<std::size_t>(moment)].bind_texture(glsl::kExactSkyUnit);
     if (band.surfaces) {
         band.surfaces.bind_texture(glsl::kExactSurfacesUnit);
         elements_.bind_texture(glsl::kExactElementsUnit);
@@ -232,120 +196,6 @@ void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work,
     }
 }
 
-PassWork ExactPass::reflect(const Plan& plan, Band& band, bool first) {
-    const Surfaces& surfaces = plan.exact.outline.surfaces;
-    glsl::ExactParams params = band.params;
-    params.level = first ? 0 : 1;
-    params.extent = {static_cast<int>(surfaces.pieces.size()), 1};
-    const std::uint32_t zero[2] = {};
-    change_.write(0, zero, sizeof(zero));
-    band.surfaces.bind_texture(glsl::kExactSurfacesUnit);
-    band.materials.bind_texture(glsl::kExactMaterialsUnit);
-    band.value.bind_texture(glsl::kExactNodeValuesUnit);
-    if (band.lights) {
-        band.lights.bind_texture(glsl::kExactNodeLightsUnit);
-        params.light_scale = static_cast<float>(1.0 / plan.radiance_scale);
-    }
-    // The next elements are made from the last.
-    std::swap(elements_, elements_before_);
-    elements_before_.bind_texture(glsl::kExactElementsUnit);
-    elements_.bind_storage(glsl::kExactElementsStorage);
-    change_.bind_storage(glsl::kExactChangeStorage);
-    PassWork work;
-    work.dispatches = reflect_.dispatch(params, params.extent);
-    work.bytes = surfaces.elements * glsl::kExactElementTexels * std::size_t(16);
-    return work;
-}
-
-void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass& delta, const Record& record, Band& band) {
-    const ExactPlan& exact = plan.exact;
-    const Surfaces& surfaces = exact.outline.surfaces;
-    for (gl::StorageBuffer* buffer : {&elements_, &elements_before_})
-        *buffer = at_least(std::move(*buffer), GL_RGBA32F, surfaces.elements * glsl::kExactElementTexels * 16);
-    band.surfaces = gl::BufferTexture(GL_RGBA32F, surfaces.pieces.data(), surfaces.pieces.size() * 16);
-    band.materials = gl::BufferTexture(GL_RGBA32F, surfaces.materials.data(), surfaces.materials.size() * 16);
-    const glm::ivec2 image{glsl::kExactNodeRow, divided_up(static_cast<int>(surfaces.elements), glsl::kExactNodeRow)};
-    band.value = settings.take(GL_RGBA32F, image);
-    band.slope_x = settings.take(GL_RGBA32F, image);
-    band.slope_y = settings.take(GL_RGBA32F, image);
-    if (plan.delta.used()) band.lights = settings.take(GL_RGBA32F, image);
-    const int elements = static_cast<int>(surfaces.elements);
-    record("reflect", {elements, 1}, [&] { return reflect(plan, band, true); });
-
-    // Surfaces in the margin light others as well: lists are for the whole domain, in bands as the picture's.
-    const glm::ivec2 origin = -plan.grid.border - 1;
-    const glm::ivec2 domain = plan.grid.size + 2;
-    struct Part {
-        glm::ivec2 origin, area, tiles;
-        SurfaceJobs jobs;
-    };
-    std::vector<Part> parts;
-    for (int row = 0; row < domain.y; row += exact.band_rows) {
-        Part part;
-        part.origin = origin + glm::ivec2(0, row);
-        part.area = {domain.x, std::min(exact.band_rows, domain.y - row)};
-        part.tiles = {divided_up(part.area.x, glsl::kExactTile), divided_up(part.area.y, glsl::kExactTile)};
-        Surfaces inside;
-        for (const Surfaces::Node& node : surfaces.nodes) {
-            const double y = double(node.place.y) - 0.5 - part.origin.y;
-            if ((row == 0 || y >= 0) && (row + exact.band_rows >= domain.y || y < part.area.y)) inside.nodes.push_back(node);
-        }
-        part.jobs = surface_jobs(inside, part.origin, part.tiles, glsl::kExactTile);
-        if (!part.jobs.tiles.empty()) parts.push_back(std::move(part));
-    }
-    const PackedOutline& outline = exact.outline;
-    gl::ComputeProgram& program =
-        solver_for({outline.counts[2] > 0, outline.counts[3] > 0, band.params.sky_kind, false, true, true});
-    for (int i = 0; i < exact.bounces; ++i) {
-        for (const Part& part : parts) {
-            band.area = part.area;
-            band.params.tiles = part.tiles;
-            band.params.list_origin = part.origin;
-            // One part's lists serve all bounces.
-            if (i == 0 || parts.size() > 1)
-                record("exact lists", {part.tiles.x, part.tiles.y * exact.sectors}, [&] { return make_lists(plan, band); });
-            const int jobs = static_cast<int>(part.jobs.tiles.size());
-            const gl::BufferTexture nodes(GL_RGBA32F, part.jobs.nodes.data(), part.jobs.nodes.size() * 16);
-            jobs_ = at_least(std::move(jobs_), GL_R32UI, part.jobs.tiles.size() * 4);
-            jobs_.write(0, part.jobs.tiles.data(), part.jobs.tiles.size() * 4);
-            if (i == 0 && band.lights)
-                record("lights on surfaces", {4 * jobs, 1},
-                       [&] { return delta.surfaces(plan, {part.origin, part.area, jobs_, nodes, jobs}, band.lights); });
-            record("bounce", {4 * jobs, 1}, [&] {
-                PassWork work;
-                const std::vector<std::uint32_t> zero(glsl::kExactCountTiles);
-                counters_.write(0, zero.data(), zero.size() * 4);
-                band.value.bind_image(glsl::kExactValueImage, GL_READ_WRITE);
-                band.slope_x.bind_image(glsl::kExactSlopeXImage, GL_READ_WRITE);
-                band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_WRITE);
-                nodes.bind_texture(glsl::kExactNodesUnit);
-                glsl::ExactParams params = band.params;
-                params.jobs = jobs;
-                params.extent = {params.jobs, 1};
-                run_solver(params, band, work, [&](const glsl::ExactParams& p) { program.dispatch(p, p.extent); });
-                std::uint32_t spent = 0;
-                counters_.read(4 * glsl::kExactCountSpent, &spent, sizeof(spent));
-                if (spent != 0)
-                    throw TooDense("The scene is too dense for the method 'exact' on this device: at " + std::to_string(spent) +
-                                   " points of surfaces its loops ran out of iterations.");
-                return work;
-            });
-        }
-        record("reflect", {elements, 1}, [&] { return reflect(plan, band, false); });
-        if (exact.converged <= 0) continue;
-        std::uint32_t bits[2] = {};
-        change_.read(0, bits, sizeof(bits));
-        float change = 0, brightest = 0;
-        std::memcpy(&change, &bits[0], 4);
-        std::memcpy(&brightest, &bits[1], 4);
-        if (double(change) <= exact.converged * double(brightest)) break;
-    }
-    settings.give(std::move(band.value));
-    settings.give(std::move(band.slope_x));
-    settings.give(std::move(band.slope_y));
-    settings.give(std::move(band.lights));
-}
-
 ExactPass::Band ExactPass::prepare(const Plan& plan, const Sky& sky) const {
     const ExactPlan& exact = plan.exact;
     const PackedOutline& outline = exact.outline;
@@ -353,9 +203,12 @@ ExactPass::Band ExactPass::prepare(const Plan& plan, const Sky& sky) const {
     band.root_entries = gl::BufferTexture(GL_RGBA32F, outline.entries.data(), outline.entries.size() * 16);
     band.root_lights = gl::BufferTexture(GL_RGBA32F, outline.lights_of.data(), outline.lights_of.size() * 16);
     band.sectors = sector_table(exact);
-    const std::vector<glm::vec4> nodes =
-        exact.sky_nodes > 0 ? sky_nodes(sky, exact.sky_nodes, plan.radiance_scale) : std::vector<glm::vec4>();
-    band.sky = gl::BufferTexture(GL_RGBA32F, nodes.data(), nodes.size() * 16);
+    const int moments = exact.moments ? 3 : 1;
+    for (int moment = 0; moment < moments; ++moment) {
+        const std::vector<glm::vec4> nodes =
+            exact.sky_nodes > 0 ? sky_nodes(sky, exact.sky_nodes, plan.radiance_scale, moment) : std::vector<glm::vec4>();
+        band.sky[static_cast<std::size_t>(moment)] = gl::BufferTexture(GL_RGBA32F, nodes.data(), nodes.size() * 16);
+    }
 
     glsl::ExactParams& params = band.params;
     params.canvas = plan.canvas;
@@ -375,23 +228,16 @@ ExactPass::Band ExactPass::prepare(const Plan& plan, const Sky& sky) const {
     return band;
 }
 
-std::vector<glm::vec4> ExactPass::surfaces(const Plan& plan, const Sky& sky, const PassSettings& settings, DeltaPass& delta, const Record& record) {
-    Band band = prepare(plan, sky);
-    bounce(plan, settings, delta, record, band);
-    std::vector<glm::vec4> elements(plan.exact.outline.surfaces.elements * glsl::kExactElementTexels);
-    elements_.read(0, elements.data(), elements.size() * sizeof(glm::vec4));
-    return elements;
-}
-
 void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings,
-                    DeltaPass& delta, const Record& record, gl::Texture2D& out) {
+                    DeltaPass& delta, const Record& record, Light& out) {
     const ExactPlan& exact = plan.exact;
     Band band = prepare(plan, sky);
     glsl::ExactParams& params = band.params;
-    out = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.lit.size);
-    params.most = most_light(exact.outline, sky, plan.radiance_scale, exact.bounces > 0);
-
-    if (exact.bounces > 0) bounce(plan, settings, delta, record, band);
+    gl::Texture2D* const results[] = {&out.mean, &out.moment_x, &out.moment_y};
+    const int moments = exact.moments ? 3 : 1;
+    for (int i = 0; i < moments; ++i) *results[i] = settings.take(plan.half_floats ? GL_RGBA16F : GL_RGBA32F, plan.lit.size);
+    params.most = most_light(exact.outline, sky, plan.radiance_scale, exact.surfaces);
+    if (exact.surfaces) bounce(plan, settings, delta, record, band);
     for (int row = 0; row < plan.canvas.y; row += exact.band_rows) {
         band.area = {plan.canvas.x, std::min(exact.band_rows, plan.canvas.y - row)};
         params.first_row = row;
@@ -471,16 +317,20 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             record(points_name(level + 1).c_str(), cells * 2, [&] { return solve(plan, field, band, level + 1); });
         }
         std::vector<std::uint32_t> counted(zero.size());
-        record("exact fill", {plan.lit.size.x, end_lit - first_lit}, [&] {
+        const auto fill = [&](int moment) {
             PassWork work;
             band.value.bind_image(glsl::kExactValueImage, GL_READ_ONLY);
             band.slope_x.bind_image(glsl::kExactSlopeXImage, GL_READ_ONLY);
             band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_ONLY);
             band.leaf.bind_image(glsl::kExactLeafImage, GL_READ_ONLY);
-            out.bind_image(glsl::kExactRadianceImage, GL_WRITE_ONLY);
+            results[moment]->bind_image(glsl::kExactRadianceImage, GL_WRITE_ONLY);
             glsl::ExactParams p = params;
             p.extent = {plan.lit.size.x, end_lit - first_lit};
-            work.dispatches = fill_.dispatch(p, p.extent, settings.pixels);
+            work.dispatches = fill_.of({{"kSigned", moment > 0 ? 1 : 0}}).dispatch(p, p.extent, settings.pixels);
+            return work;
+        };
+        record("exact fill", {plan.lit.size.x, end_lit - first_lit}, [&] {
+            PassWork work = fill(0);
             counters_.read(0, counted.data(), counted.size() * 4);
             work.points = std::accumulate(counted.begin() + glsl::kExactCountTiles, counted.end(), std::size_t(0));
             return work;
@@ -488,6 +338,16 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         if (counted[glsl::kExactCountSpent] != 0)
             throw TooDense("The scene is too dense for the method 'exact' on this device: at " +
                            std::to_string(counted[glsl::kExactCountSpent]) + " points its loops ran out of iterations.");
+        // Radiance times direction, at the same points and in the same cells: its edges are the same.
+        for (int moment = 1; moment < moments; ++moment) {
+            record("exact moments", {plan.lit.size.x, end_lit - first_lit}, [&] {
+                counters_.write(0, zero.data(), std::size_t(4) * glsl::kExactCountTiles);
+                PassWork work;
+                for (int level = 0; level < kLevels; ++level) work.dispatches += solve(plan, field, band, level, moment).dispatches;
+                work.dispatches += fill(moment).dispatches;
+                return work;
+            });
+        }
         settings.give(std::move(band.value));
         settings.give(std::move(band.slope_x));
         settings.give(std::move(band.slope_y));

@@ -34,9 +34,13 @@ public:
 
     // `record(name, extent, run)` times each step: lists, points, cells, fill.
     using Record = std::function<void(const char* name, glm::ivec2 extent, const std::function<PassWork()>& run)>;
+    // What is found of each pixel: the mean of radiance, and where the plan asks for them of radiance times direction.
+    struct Light {
+        gl::Texture2D mean, moment_x, moment_y;
+    };
     // `delta` lights surfaces where light bounces.
     void run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings, DeltaPass& delta,
-             const Record& record, gl::Texture2D& out);
+             const Record& record, Light& out);
 
     // What surfaces shine with after all bounces: by element, as glsl/exact.h lays them out. For methods that sample.
     std::vector<glm::vec4> surfaces(const Plan& plan, const Sky& sky, const PassSettings& settings, DeltaPass& delta, const Record& record);
@@ -47,11 +51,11 @@ private:
     struct Band;
     Band prepare(const Plan& plan, const Sky& sky) const;
     PassWork make_lists(const Plan& plan, Band& band);
-    PassWork solve(const Plan& plan, const DistanceField& field, Band& band, int level);
+    PassWork solve(const Plan& plan, const DistanceField& field, Band& band, int level, int moment = 0);
     // Lets the light bounce between surfaces: afterwards `elements_` tells what each shines with.
     void bounce(const Plan& plan, const PassSettings& settings, DeltaPass& delta, const Record& record, Band& band);
     PassWork reflect(const Plan& plan, Band& band, bool first);
-    void run_solver(glsl::ExactParams params, Band& band, PassWork& work,
+    void run_solver(glsl::ExactParams params, Band& band, PassWork& work, int moment,
                     const std::function<void(const glsl::ExactParams&)>& dispatch);
 
     // A program for what a scene has, compiled when first asked for.
@@ -59,6 +63,7 @@ private:
         bool arcs, ellipses;
         int sky;
         bool slopes, surfaces, nodes;
+        int moment;  // 0: mean radiance; 1, 2: times the direction's x or y
         auto operator<=>(const Needs&) const = default;
     };
     gl::ComputeProgram& lists_for(const ExactPlan& exact);
@@ -70,7 +75,7 @@ private:
     gl::ComputeProgram split_;
     gl::ComputeProgram gather_;
     gl::ComputeProgram mean_;
-    gl::ComputeProgram fill_;
+    gl::ProgramForms fill_;
     gl::ComputeProgram reflect_;
     gl::StorageBuffer coarse_heads_, coarse_entries_, coarse_lights_;
     gl::StorageBuffer heads_, entries_, lights_;

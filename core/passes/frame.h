@@ -37,7 +37,8 @@ struct PassSettings {
 // For programs that read the scene (glsl/lib/scene.glsl): the kinds of shapes that it has. None: made for all.
 inline gl::ShaderConstants scene_constants(const ProgramNeeds& needs) {
     if (needs.general) return {};
-    return {{"kSceneEllipses", needs.ellipses ? 1 : 0}, {"kSceneOutlines", needs.outlines ? 1 : 0}, {"kSceneBitmaps", needs.bitmaps ? 1 : 0}};
+    return {{"kSceneEllipses", needs.ellipses ? 1 : 0}, {"kSceneOutlines", needs.outlines ? 1 : 0}, {"kSceneBitmaps", needs.bitmaps ? 1 : 0},
+            {"kSceneGradients", needs.gradients ? 1 : 0}};
 }
 
 // For programs that meet surfaces as well (glsl/lib/surface_light.glsl).

@@ -45,7 +45,7 @@ gl::Texture2D lit_solids(const Plan& plan, const Scene& scene, const FrameLight&
     if (plan.shape_slices.empty() || std::none_of(scene.shapes.begin(), scene.shapes.end(), reflects)) return black_texel();
     const auto distances = read<float>(light.field.distance, GL_RED, GL_FLOAT, 1);
     const auto materials = read<std::int32_t>(light.field.material, GL_RED_INTEGER, GL_INT, 1);
-    const auto radiance = read<float>(light.radiance, GL_RGBA, GL_FLOAT, 4), lights = read<float>(light.lights, GL_RGBA, GL_FLOAT, 4);
+    const auto radiance = read<float>(*light.radiance, GL_RGBA, GL_FLOAT, 4), lights = read<float>(*light.lights, GL_RGBA, GL_FLOAT, 4);
     const glm::ivec2 size = plan.canvas;
     // One texel stands for a light that is the same everywhere.
     const auto sample = [](const gl::Texture2D& texture, const std::vector<float>& values, glm::ivec2 at, std::size_t channel) {
@@ -70,7 +70,7 @@ gl::Texture2D lit_solids(const Plan& plan, const Scene& scene, const FrameLight&
             if (shape < 0) continue;
             const Colour albedo = albedo_at(scene.shapes[std::size_t(shape)], {view.x + (x + 0.5) * pixel, view.y + (y + 0.5) * pixel});
             for (std::size_t c = 0; c < 3; ++c) {
-                const double arriving = plan.radiance_scale * sample(light.radiance, radiance, nearest[i], c) + sample(light.lights, lights, nearest[i], c);
+                const double arriving = plan.radiance_scale * sample(*light.radiance, radiance, nearest[i], c) + sample(*light.lights, lights, nearest[i], c);
                 lit[4 * i + c] = static_cast<float>(albedo[int(c)] * arriving);
             }
         }

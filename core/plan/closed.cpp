@@ -94,7 +94,10 @@ std::vector<DarkRegion> dark_regions(const Boundary& boundary, const PixelFrame&
     const std::vector<Piece>& pieces = boundary.pieces();
     std::vector<DarkRegion> regions;
     if (pieces.size() > most_pieces) return regions;
-    const auto shines = [&](std::size_t i) { return boundary.material_of(pieces[i]).emission != Colour(0); };
+    const auto shines = [&](std::size_t i) {
+        const reference::Material& material = boundary.material_of(pieces[i]);
+        return material.emission != Colour(0) || material.slope != Colour(0);
+    };
     std::optional<std::vector<glm::dvec2>> lights;  // a point on each piece that shines
     for (const std::vector<std::size_t>& ring : rings_of(boundary, frame)) {
         if (std::any_of(ring.begin(), ring.end(), shines)) continue;

@@ -19,7 +19,7 @@ struct DeltaPlan {
 };
 
 // Lights that give nothing are left out. Positions in pixels of the view; intensities such that the irradiance at r pixels is
-// intensity / r (light-transport.md has world units).
+// intensity / r, or intensity / d^2 of those that stand at a height (light-transport.md has world units).
 std::vector<glm::vec4> pack_lights(const Scene& scene);
 
 }  // namespace penumbra

@@ -44,6 +44,7 @@ ExactPlan plan_exact(const Scene& scene, PackedOutline outline, glm::ivec2 canva
     const int rows = std::max(most_pixels / std::max(canvas.x, 1), 1);
     const int unit = plan.coarse_tile > 0 ? plan.coarse_tile : glsl::kExactTile;
     plan.band_rows = std::max(rows / unit, 1) * unit;
+    plan.surfaces = !outline.surfaces.pieces.empty();
     plan.outline = std::move(outline);
     return plan;
 }

@@ -32,6 +32,8 @@ struct ExactPlan {
     int coarse_tile = 0;        // px: lists of such tiles are made first; 0: there are few pieces
     int band_rows = 0;          // pixels: the canvas is solved this many rows at a time, a multiple of the tile
     int sky_nodes = 0;          // 0: a constant sky, or none
+    bool surfaces = false;      // pieces shine differently from place to place
+    bool moments = false;       // means of radiance times direction are asked for as well
     int bounces = 0;            // 0: surfaces do not reflect
     double converged = 0;       // ends before, once nothing changes by more than this share of the brightest; 0: does not
 };

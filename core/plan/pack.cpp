@@ -74,6 +74,17 @@ private:
         first_edge_ = packed_.edges.size();
     }
 
+    // Of the shape packed last.
+    void gradient(const Shape& shape, const std::vector<vec4>& shares) {
+        vec4& own = packed_.shapes.back();
+        own.x = float(shape.gradient.size());
+        own.y = float(packed_.edges.size());
+        packed_.edges.insert(packed_.edges.end(), shares.begin(), shares.end());
+        for (const EmissionStop& stop : shape.gradient)
+            packed_.edges.push_back(vec4(glm::vec3(stop.emission * scale_), float(stop.at)));
+        first_edge_ = packed_.edges.size();
+    }
+
     static vec4 join(dvec2 a, dvec2 b) { return {float(a.x), float(a.y), float(b.x), float(b.y)}; }
     static dvec2 turn(double degrees) {
         // Quarter turns are exact, so that a scene turned by 90 degrees gives the turned picture.
@@ -113,6 +124,7 @@ private:
         const double half = 0.5 * frame_.length(g.width);
         const double perimeter = 2 * frame_.length(glm::length(g.to - g.from)) + 2 * std::numbers::pi * half;
         record(shape, glsl::kShapeLine, half, perimeter, join(frame_.point(g.from), frame_.point(g.to)), {0, 0, float(half), 0});
+        gradient(shape, {});
     }
 
     void add(const Shape& shape, const Polyline& g) {
@@ -124,6 +136,17 @@ private:
             length += std::hypot(double(e.z) - double(e.x), double(e.w) - double(e.y));
         }
         record(shape, glsl::kShapePolyline, half, 2 * length + 2 * std::numbers::pi * half, box, {0, 0, float(half), 0});
+        if (shape.gradient.empty()) return;
+        const double whole = stroke_length(g);
+        std::vector<vec4> shares;
+        double run = 0;
+        for_each_segment(g, [&](Point a, Point b) {
+            const double next = run + glm::length(b - a);
+            shares.push_back(whole > 0 ? vec4(run / whole, next / whole, 0, 0) : vec4(0));
+            run = next;
+        });
+        if (shares.empty()) shares.push_back(vec4(0));
+        gradient(shape, shares);
     }
 
     void add(const Shape& shape, const Polygon& g) {

@@ -82,7 +82,7 @@ private:
     bool same_light(int a, int b) const {
         if (a == kMixed || b == kMixed) return false;
         const auto& all = boundary_->materials();
-        return all[std::size_t(a)].emission == all[std::size_t(b)].emission;
+        return all[std::size_t(a)].emission == all[std::size_t(b)].emission && all[std::size_t(a)].slope == Colour(0) && all[std::size_t(b)].slope == Colour(0);
     }
     Key corner(Point p) const { return {at(p.x), at(p.y), 0}; }
     Key circle(const Piece& piece) const {
@@ -101,20 +101,25 @@ private:
 // Cuts the pieces of a scene that reflects into elements.
 class SurfaceMaker {
 public:
-    SurfaceMaker(const Scene& scene, const PixelFrame& frame, const reference::Boundary& boundary) : frame_(frame), boundary_(boundary) {
+    SurfaceMaker(const Scene& scene, const PixelFrame& frame, const reference::Boundary& boundary, bool reflecting)
+        : frame_(frame), boundary_(boundary), reflecting_(reflecting) {
         double length = 0;
         for (const Piece& piece : boundary.pieces())
-            if (boundary.material_of(piece).albedo != Colour(0)) length += course_of(piece).length;
+            if (reflecting && boundary.material_of(piece).albedo != Colour(0)) length += course_of(piece).length;
         size_ = std::max(element_size(scene.render.quality), 2 * length / kMostNodes);
     }
 
     void add(const Piece& piece, glm::vec4 ends, double radiance_scale) {
         const reference::Material& material = boundary_.material_of(piece);
         const SurfaceCourse course = course_of(piece);
-        const bool reflects = material.albedo != Colour(0);
-        const int count = reflects ? element_count(course, size_) : 1;
+        const bool reflects = reflecting_ && material.albedo != Colour(0);
+        // Rays of other methods find light that bounced, and with it all emission, by element.
+        const bool cut = reflects || (reflecting_ && material.slope != Colour(0));
+        const int count = cut ? element_count(course, size_) : 1;
         made_.pieces.emplace_back(float(made_.elements), float(course.whole ? -count : count), float(course.start_angle), float(course.sweep));
-        made_.materials.emplace_back(glm::vec3(material.emission / radiance_scale), 0.0f);
+        const Colour start = material.slope == Colour(0) ? material.emission : material.emission_at(piece.a);
+        made_.materials.emplace_back(glm::vec3(start / radiance_scale), 0.0f);
+        made_.materials.emplace_back(glm::vec3(material.slope * reference::dot(piece.b - piece.a, material.axis) / radiance_scale), 0.0f);
         made_.materials.emplace_back(glm::vec3(0.5 * material.albedo), 0.0f);
         for (int i = 0; i < count && reflects; ++i) {
             const double u = 0.5 * (element_start(i, count, course.whole) + element_start(i + 1, count, course.whole));
@@ -131,7 +136,7 @@ public:
             };
             made_.nodes.push_back({glm::vec4(glm::vec2(place), glm::vec2(normal)), glm::vec2(end_of(i + 1) - end_of(i)), static_cast<std::uint32_t>(made_.elements) + static_cast<std::uint32_t>(i)});
         }
-        const int chords = reflects ? count : element_count(course, size_);
+        const int chords = cut ? count : element_count(course, size_);
         for (int i = 0; i < chords; ++i) {
             const auto end_of = [&](int element) {
                 const double u = element_start(element, chords, course.whole);
@@ -139,7 +144,7 @@ public:
                 return frame_.point(piece.at(piece.t0 + u * (piece.t1 - piece.t0)));
             };
             made_.chords.push_back({glm::vec4(glm::vec2(end_of(i)), glm::vec2(end_of(i + 1))),
-                                    static_cast<std::uint32_t>(made_.elements) + static_cast<std::uint32_t>(reflects ? i : 0)});
+                                    static_cast<std::uint32_t>(made_.elements) + static_cast<std::uint32_t>(cut ? i : 0)});
         }
         made_.elements += static_cast<std::size_t>(count) + 1;
     }
@@ -172,6 +177,7 @@ private:
 
     const PixelFrame& frame_;
     const reference::Boundary& boundary_;
+    bool reflecting_ = false;
     double size_ = 1;
     Surfaces made_;
 };
@@ -181,7 +187,7 @@ constexpr int kSurvey = 6;
 
 double survey_intervals(const Scene& scene, const reference::Boundary& boundary) {
     std::vector<char> shining;
-    for (const Piece& piece : boundary.pieces()) shining.push_back(boundary.material_of(piece).emission != Colour(0));
+    for (const Piece& piece : boundary.pieces()) shining.push_back(boundary.material_of(piece).shines());
     const bool dark = reference::SkyIntegral(scene.sky).is_black();
     reference::Sweep sweep(boundary, dark ? &shining : nullptr);
     const ViewRect view = scene.canvas.view_or_default();
@@ -204,7 +210,7 @@ double survey_intervals(const Scene& scene, const reference::Boundary& boundary)
 double smallest_light(const reference::Boundary& boundary) {
     std::map<int, reference::Box> boxes;
     for (const Piece& piece : boundary.pieces()) {
-        if (boundary.material_of(piece).emission == Colour(0)) continue;
+        if (!boundary.material_of(piece).shines()) continue;
         const reference::Box box = piece.box();
         reference::Box& all = boxes[piece.body];
         all.add(box.low);
@@ -251,8 +257,10 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
     out.smallest_body = smallest_body(boundary) * scale;
     if (survey) out.mean_intervals = survey_intervals(scene, boundary);
     // Elements lie on what can be seen: nothing is taken whole that is not.
-    const WholeCircles whole = reflecting ? WholeCircles() : WholeCircles(boundary);
-    SurfaceMaker surfaces(scene, frame, boundary);
+    const bool in_parts = reflecting || std::any_of(boundary.pieces().begin(), boundary.pieces().end(),
+                                                    [&](const Piece& piece) { return boundary.material_of(piece).slope != Colour(0); });
+    const WholeCircles whole = in_parts ? WholeCircles() : WholeCircles(boundary);
+    SurfaceMaker surfaces(scene, frame, boundary, reflecting);
     // Kind by kind, what emits first.
     for (const Kind kind : {Kind::straight, Kind::disc, Kind::arc, Kind::ellipse}) {
         for (const bool emits : {true, false}) {
@@ -261,7 +269,7 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
                 const reference::Material& material = boundary.material_of(piece);
                 if (whole.is_part(i) && !whole.is_first(i)) continue;
                 const Kind own = whole.is_part(i) ? Kind::disc : kind_of(piece);
-                const bool shines = material.emission != Colour(0) || (reflecting && material.albedo != Colour(0));
+                const bool shines = material.shines() || (reflecting && material.albedo != Colour(0));
                 if (own != kind || shines != emits) continue;
                 const glm::vec4 ends(piece.is_full ? glm::vec2(0) : corners.at(piece.a),
                                      piece.is_full ? glm::vec2(0) : corners.at(piece.b));
@@ -284,7 +292,7 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
                 }
                 out.lights_of.resize(out.entries.size(), glm::vec4(glm::vec3(material.emission / radiance_scale),
                                                                    static_cast<float>(out.pieces)));
-                if (reflecting) surfaces.add(piece, ends, radiance_scale);
+                if (in_parts) surfaces.add(piece, ends, radiance_scale);
                 ++out.pieces;
                 ++out.counts[static_cast<std::size_t>(kind)];
                 if (emits) ++out.lights[static_cast<std::size_t>(kind)];
@@ -292,11 +300,11 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
         }
     }
     for (const int count : out.lights) out.emitting += static_cast<std::size_t>(count);
-    if (reflecting) out.surfaces = surfaces.take();
+    if (in_parts) out.surfaces = surfaces.take();
     return out;
 }
 
-std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scale) {
+std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scale, int moment) {
     const reference::SkyIntegral integral(sky);
     // Which of the sky's parts between its steps each direction lies in. A single step needs a second border, at angle 0, to
     // have two parts.
@@ -317,7 +325,8 @@ std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scal
     for (int i = 0; i <= nodes; ++i) {
         table.push_back(glm::vec4(glm::vec3(sum / radiance_scale), 0.0f));
         table.push_back(glm::vec4(glm::vec3(integral.radiance(i * step) / radiance_scale), part(360.0 * (i % nodes) / nodes)));
-        sum += integral.integral(i * step, step);
+        sum += moment == 0 ? integral.integral(i * step, step)
+                           : integral.cosine_integral(i * step, step, moment == 1 ? 0 : 0.5 * std::numbers::pi);
     }
     return table;
 }

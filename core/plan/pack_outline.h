@@ -27,17 +27,17 @@ struct PackedOutline {
     double smallest_body = 0;               // px: extent of the smallest of all
     double mean_intervals = 0;              // of direction that a point tells apart, over a few points; when asked for
     std::vector<DarkRegion> dark_regions;   // closed off from all light
-    Surfaces surfaces;                      // empty unless they reflect
+    Surfaces surfaces;                      // empty unless they reflect, or emission changes along them
     std::size_t bytes() const { return 16 * (entries.size() + lights_of.size()); }
 };
 
 // Emission is divided by `radiance_scale`. Corners that two pieces share stay equal to the last bit. `survey` asks for
 // `mean_intervals`, which tells how dear the scene is. Expects at most `most_pieces`, else `fits` is false.
-// With `reflecting`, pieces with an albedo shine as well, and `surfaces` is filled.
+// With `reflecting`, pieces with an albedo shine as well; then, or where emission changes along a piece, `surfaces` is filled.
 PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool survey, std::size_t most_pieces, bool reflecting = false);
 
 // Two texels a node, one node more than `nodes`: the integral of the sky's radiance from angle 0 on; its radiance and, in a, a
-// number of the part between two of its steps.
-std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scale);
+// number of the part between two of its steps. `moment` 1 and 2: the integral of radiance times the cosine, the sine of its angle.
+std::vector<glm::vec4> sky_nodes(const Sky& sky, int nodes, double radiance_scale, int moment = 0);
 
 }  // namespace penumbra

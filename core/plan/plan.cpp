@@ -40,6 +40,8 @@ std::size_t tests_per_ray(const std::vector<Shape>& shapes) {
     std::size_t tests = 0;
     for (const Shape& shape : shapes) {
         tests += kIterationsPerShape + edge_count(shape);
+        // A ray that meets it looks its place up.
+        if (!shape.gradient.empty()) tests += edge_count(shape) + shape.gradient.size() + 2;
         if (const auto* bitmap = std::get_if<Bitmap>(&shape.geometry))
             tests += static_cast<std::size_t>(bitmap->image->width + bitmap->image->height + 2);
     }
@@ -71,7 +73,9 @@ bool light_bounces(const Scene& scene) {
 
 double brightest_emission(const Shape& shape) {
     if (const auto* bitmap = std::get_if<Bitmap>(&shape.geometry)) return bitmap->as_albedo ? 0.0 : bitmap->emission_scale;
-    return std::max({shape.emission.r, shape.emission.g, shape.emission.b});
+    double peak = std::max({shape.emission.r, shape.emission.g, shape.emission.b});
+    for (const EmissionStop& stop : shape.gradient) peak = std::max({peak, stop.emission.r, stop.emission.g, stop.emission.b});
+    return peak;
 }
 
 std::vector<ShapeSlice> slice_shapes(const std::vector<Shape>& shapes) {
@@ -262,6 +266,8 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     plan.method = scene.render.method;
     plan.method_reason = "asked for";
     const bool reflecting = light_bounces(scene);
+    const FloorMaterial& floor = scene.canvas.floor;
+    plan.floor = {!floor.is_plain(), floor.has_relief(), floor.gloss.has_value()};
     const PixelRect region = scene.canvas.region_or_all();
     plan.shown = {{region.x, region.y}, {region.w, region.h}};
     plan.lit.first = glm::max(plan.shown.first - 1, glm::ivec2(0));
@@ -296,8 +302,12 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     PackedOutline outline;
     if (plan.method == "auto") {
         outline = pack_outline(scene, 1.0, true, most_surveyed_pieces(), reflecting);
+        if (plan.floor.relief && !(outline.fits && not_exact.empty()))
+            throw DeviceError("The scene is too dense for a floor with relief, which only the method 'exact' has: " +
+                              (not_exact.empty() ? "its outline has more than " + std::to_string(most_surveyed_pieces()) + " pieces." : not_exact));
         const MethodChoice choice = !not_exact.empty()            ? MethodChoice{"hrc", not_exact}
                                     : reflecting && outline.fits ? MethodChoice{"exact", "surfaces reflect"}
+                                    : plan.floor.relief          ? MethodChoice{"exact", "the floor has relief"}
                                                                  : choose_method(outline, scene.render.quality);
         plan.method = choice.method;
         plan.method_reason = choice.reason;
@@ -324,9 +334,10 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     }
 
     if (skip(Saving::programs)) {
-        plan.needs = {false, false, false, false};
+        plan.needs = {false, false, false, false, false};
         for (const Shape& shape : scene.shapes) {
             const Geometry& g = shape.geometry;
+            plan.needs.gradients = plan.needs.gradients || !shape.gradient.empty();
             plan.needs.ellipses = plan.needs.ellipses || std::holds_alternative<Ellipse>(g);
             plan.needs.outlines = plan.needs.outlines || std::holds_alternative<Polyline>(g) || std::holds_alternative<Polygon>(g);
             plan.needs.bitmaps = plan.needs.bitmaps || std::holds_alternative<Bitmap>(g);
@@ -371,6 +382,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         plan.exact.used = false;
         plan.needs.surfaces = true;
     }
+    plan.exact.moments = exact && plan.floor.relief;
     plan.exact.bounces = reflecting ? scene.render.bounces : 0;
     plan.exact.converged = scene.render.converged ? scene.render.tolerance : 0;
     if (scene.render.bounces > 0 && !reflecting) leave_out("bounces", "no surface reflects", double(scene.render.bounces));
@@ -441,11 +453,13 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     if (plan.resolve) plan.gpu_bytes += area(plan.lit.size) * texel;
     if (plan.exact.used) plan.gpu_bytes += area(plan.lit.size) * texel + exact_bytes(plan.exact, plan.canvas);
     if (plan.delta.used()) plan.gpu_bytes += 16 * area(plan.lit.size);
+    if (plan.exact.moments) plan.gpu_bytes += 2 * texel * area(plan.lit.size);
+    if (plan.floor.used) plan.gpu_bytes += 16 * area(plan.lit.size) * (floor.normals ? 3 : floor.image ? 2 : 1);
     if (plan.hrc.active()) fit_hrc(plan, peak, limits);
     for (glm::vec4& light : plan.exact.outline.lights_of)
         light = glm::vec4(glm::vec3(light) / static_cast<float>(plan.radiance_scale), light.a);
-    for (std::size_t i = 0; i < plan.exact.outline.surfaces.materials.size(); i += 2)
-        plan.exact.outline.surfaces.materials[i] /= static_cast<float>(plan.radiance_scale);
+    for (std::size_t i = 0; i < plan.exact.outline.surfaces.materials.size(); ++i)
+        if (i % glsl::kExactMaterialTexels != 2) plan.exact.outline.surfaces.materials[i] /= static_cast<float>(plan.radiance_scale);
     return plan;
 }
 

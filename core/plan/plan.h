@@ -82,7 +82,15 @@ struct ProgramNeeds {
     bool ellipses = true;
     bool outlines = true;  // polylines and polygons
     bool bitmaps = true;
+    bool gradients = true;  // of emission, along strokes
     bool surfaces = false;  // that shine with light that bounced, as sampled rays meet them
+};
+
+// A floor that is more than an albedo.
+struct FloorPlan {
+    bool used = false;
+    bool relief = false;  // it matters where light comes from
+    bool gloss = false;
 };
 
 struct Plan {
@@ -105,6 +113,7 @@ struct Plan {
     ExactPlan exact;                    // of the method `exact`; of others, what surfaces shine with is found by it
     HrcPlan hrc;                        // inactive unless this method runs
     DeltaPlan delta;                    // point, spot and directional lights
+    FloorPlan floor;
     std::vector<glm::ivec2> closed_tiles;  // first pixels of tiles of kExactTile px that no light reaches: taken for solid
     bool lone = false;                  // pixels are interpolated between probes, which may all be inside of shapes
     bool resolve = false;               // false: cascade 0 already is the mean radiance per pixel

@@ -295,7 +295,9 @@ std::optional<Scene> without_unseen_shapes(const Scene& scene, std::vector<Skipp
 
 bool shines(const Shape& shape) {
     const auto* bitmap = std::get_if<Bitmap>(&shape.geometry);
-    if (bitmap == nullptr) return shape.emission != Colour(0);
+    if (bitmap == nullptr)
+        return shape.emission != Colour(0) ||
+               std::any_of(shape.gradient.begin(), shape.gradient.end(), [](const EmissionStop& stop) { return stop.emission != Colour(0); });
     if (bitmap->as_albedo || bitmap->emission_scale <= 0) return false;
     const std::vector<std::uint8_t>& rgba = bitmap->image->rgba;
     const double least = std::ceil(bitmap->solid_above * 255.0 - 1e-9);
@@ -305,7 +307,7 @@ bool shines(const Shape& shape) {
 }
 
 std::optional<ConstantLight> constant_light(const Scene& scene) {
-    if (!saves(scene.render, Saving::constant)) return std::nullopt;
+    if (!saves(scene.render, Saving::constant) || !scene.canvas.floor.is_plain()) return std::nullopt;
     const auto bright = [](const Light& light) {
         return std::visit(
             [](const auto& l) {

@@ -9,6 +9,8 @@ Problems unsupported(const Scene& scene, const Features& features) {
         problems.push_back({std::move(pointer), "not_supported_yet", what + " not supported yet"});
     };
     if (scene.render.method == "hybrid") refuse("/render/method", "the method 'hybrid' is");
+    if (scene.canvas.floor.has_relief() && scene.render.method != "auto" && scene.render.method != "exact")
+        refuse("/canvas/floor", "a floor with a normal_map, roughness, metallic or reflectance with the method '" + scene.render.method + "' is");
     const std::string& view = scene.render.view;
     if (view != "final" && view != "distance" && view != "normals" && view != "tiles")
         problems.push_back({"/render/view", "not_supported_yet",

@@ -206,7 +206,7 @@ void Boundary::keep_if_visible(Piece part) {
     if (top != part.body) {
         const Body& body = bodies_[std::size_t(top)];
         if (body.kind == Body::Kind::bitmap) return;
-        part.material = body.material;
+        part.material = body.material_at(m);
         part.body = top;
     }
     pieces_.push_back(part);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/floor/floor.h"
 #include "core/reference/sweep.h"
 
 namespace penumbra::reference {
@@ -17,6 +18,8 @@ public:
     bool empty() const { return lights_.empty(); }
     // What they add to the mean radiance at `p`, given all that `p` sees.
     Colour mean_radiance(Point p, Point forward, const std::vector<Interval>& seen) const;
+    // What a floor sends up of them.
+    Colour on_floor(const Floor& floor, const FloorPlace& place, Point p, Point forward, const std::vector<Interval>& seen) const;
     // The irradiance at a boundary point with outward normal `forward`.
     Colour irradiance(Point p, Point forward, const std::vector<Interval>& seen) const;
     // A number that tells which lights reach the boundary point (equal sets, equal numbers).
@@ -26,7 +29,11 @@ private:
     struct Arrival {
         Point direction{0};  // towards the light, a unit vector (any, where `at_light`)
         bool at_light = false;
-        Colour strength{0};   // irradiance across the beam, shadows left out
+        Colour strength{0};   // flatland's irradiance across the beam, shadows left out
+        Colour on_floor{0};   // what it adds to the mean radiance
+        // Of lights above the canvas: the illuminance across the beam, and the sine of its elevation; else 0.
+        Colour across{0};
+        double up = 0;
         double distance = 0;  // infinite for directional lights
     };
     Arrival arrival(const Light& light, Point p) const;

@@ -24,7 +24,10 @@ Point direction_of(double degrees) {
 }
 
 int add_material(Outlines& out, const Shape& shape) {
-    out.materials.push_back({shape.emission, shape.albedo});
+    Material material;
+    material.emission = shape.emission;
+    material.albedo = shape.albedo;
+    out.materials.push_back(material);
     return int(out.materials.size()) - 1;
 }
 
@@ -85,10 +88,80 @@ void add_rect(Outlines& out, Body body, const Rect& rect) {
     }
 }
 
+// Emission at a share of a stroke's length; of the two of a step, that `before` it or the other.
+Colour emission_along(const std::vector<EmissionStop>& stops, double at, bool before) {
+    for (std::size_t i = 0; i < stops.size(); ++i) {
+        const EmissionStop& stop = stops[i];
+        if (before ? stop.at < at : stop.at <= at) continue;
+        if (i == 0) return stop.emission;
+        const EmissionStop& last = stops[i - 1];
+        return last.emission + (stop.emission - last.emission) * ((at - last.at) / (stop.at - last.at));
+    }
+    return stops.back().emission;
+}
+
+// The parts of a capsule between the stops of its stroke's gradient: it goes from the share s0 to s1 of the stroke's length.
+void add_parts(Outlines& out, Body& body, const Shape& shape, Point from, Point to, double s0, double s1) {
+    std::vector<double> ends;
+    for (const EmissionStop& stop : shape.gradient)
+        if (stop.at > s0 && stop.at < s1 && (ends.empty() || stop.at > ends.back())) ends.push_back(stop.at);
+    ends.push_back(s1);
+    const double reach = std::sqrt(length_squared(to - from));
+    double start = s0;
+    for (const double end : ends) {
+        Material material;
+        material.albedo = shape.albedo;
+        material.emission = emission_along(shape.gradient, start, false);
+        material.origin = s1 > s0 ? from + (to - from) * ((start - s0) / (s1 - s0)) : from;
+        material.axis = reach > 0 ? (to - from) / reach : Point(1, 0);
+        if (end > start) {
+            const double length = reach * (end - start) / (s1 - s0);
+            material.slope = (emission_along(shape.gradient, end, true) - material.emission) / length;
+        }
+        out.materials.push_back(material);
+        body.parts.push_back({s1 > s0 ? (end - s0) / (s1 - s0) : 1.0, int(out.materials.size()) - 1});
+        start = end;
+    }
+}
+
+// Light of the round end that begins or ends a capsule: that of its end.
+int end_material(Outlines& out, const Body& body, Point end) {
+    if (body.parts.empty()) return body.material;
+    Material material = out.materials[std::size_t(body.material_at(end))];
+    material.emission = material.emission_at(end);
+    material.slope = Colour(0);
+    out.materials.push_back(material);
+    return int(out.materials.size()) - 1;
+}
+
+// A straight side from `a` to `b`, whose places along the capsule are u0 and u1; cut where its light changes.
+void add_side(Outlines& out, int body, Point a, Point b, double u0, double u1) {
+    const std::vector<Body::Part> parts = out.bodies[std::size_t(body)].parts;
+    if (parts.empty()) {
+        add_piece(out, straight_piece(a, b), body);
+        return;
+    }
+    double start = 0;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const Body::Part& part = u0 < u1 ? parts[i] : parts[parts.size() - 1 - i];
+        const std::size_t after = parts.size() - 1 - i;
+        const double end = u0 < u1 ? part.end : after == 0 ? 1.0 : 1 - parts[after - 1].end;
+        Piece piece = straight_piece(start == 0 ? a : a + (b - a) * start, end >= 1 ? b : a + (b - a) * end);
+        piece.body = body;
+        piece.material = part.material;
+        out.pieces.push_back(piece);
+        start = end;
+    }
+}
+
 void add_capsule(Outlines& out, Body body, Point from, Point to, double width) {
     const double r = width / 2;
     const double reach = std::sqrt(length_squared(to - from));
     if (reach == 0) {
+        if (!body.parts.empty()) {
+            body.material = body.parts.front().material;
+            body.parts.clear();
+        }
         add_ellipse(out, std::move(body), from, {r, 0}, {0, r});
         return;
     }
@@ -102,16 +175,21 @@ void add_capsule(Outlines& out, Body body, Point from, Point to, double width) {
     const int index = add_body(out, std::move(body));
     const Point along = (to - from) / reach;
     const Point side = turned(along) * r;  // of the straight piece that runs from `from` to `to`
-    add_piece(out, straight_piece(from + side, to + side), index);
+    const auto add_cap = [&](Piece cap, Point end) {
+        cap.body = index;
+        cap.material = end_material(out, out.bodies[std::size_t(index)], end);
+        out.pieces.push_back(cap);
+    };
+    add_side(out, index, from + side, to + side, 0, 1);
     Piece cap = arc_piece(to, side, along * r, 0, kPi);
     cap.a = to + side;
     cap.b = to - side;
-    add_piece(out, cap, index);
-    add_piece(out, straight_piece(to - side, from - side), index);
+    add_cap(cap, to);
+    add_side(out, index, to - side, from - side, 1, 0);
     cap = arc_piece(from, -side, -along * r, 0, kPi);
     cap.a = from - side;
     cap.b = from + side;
-    add_piece(out, cap, index);
+    add_cap(cap, from);
 }
 
 void add_polygon(Outlines& out, Body body, const Polygon& polygon) {
@@ -145,14 +223,23 @@ struct Adder {
         add_ellipse(out, body(), e.center, along * e.radii.x, Point(-along.y, along.x) * e.radii.y);
     }
     void operator()(const Rect& r) const { add_rect(out, body(), r); }
-    void operator()(const Line& l) const { add_capsule(out, body(), l.from, l.to, l.width); }
+    // The part of a stroke from the share s0 of its length to s1.
+    void capsule(Body made, Point from, Point to, double width, double s0, double s1) const {
+        if (!shape.gradient.empty()) add_parts(out, made, shape, from, to, s0, s1);
+        add_capsule(out, std::move(made), from, to, width);
+    }
+    void operator()(const Line& l) const { capsule(body(), l.from, l.to, l.width, 0, l.from == l.to ? 0 : 1); }
     void operator()(const Polyline& p) const {
         const Body made = body();
         const std::size_t n = p.points.size();
-        if (n == 1) add_capsule(out, made, p.points[0], p.points[0], p.width);
-        for (std::size_t i = 0; i + 1 < n; ++i)
-            add_capsule(out, made, p.points[i], p.points[i + 1], p.width);
-        if (p.closed && n > 2) add_capsule(out, made, p.points[n - 1], p.points[0], p.width);
+        if (n == 1) capsule(made, p.points[0], p.points[0], p.width, 0, 0);
+        const double whole = stroke_length(p);
+        double run = 0;
+        for_each_segment(p, [&](Point a, Point b) {
+            const double next = run + std::sqrt(length_squared(b - a));
+            capsule(made, a, b, p.width, whole > 0 ? run / whole : 0, whole > 0 ? next / whole : 0);
+            run = next;
+        });
     }
     void operator()(const Polygon& p) const { add_polygon(out, body(), p); }
     void operator()(const Bitmap& b) const { add_bitmap(b, index, max_pieces, out); }
@@ -274,6 +361,12 @@ bool Body::contains(Point p) const {
 }
 
 int Body::material_at(Point p) const {
+    if (!parts.empty()) {
+        const double u = dot(p - center, axis) / length_squared(axis);
+        for (const Part& part : parts)
+            if (u < part.end) return part.material;
+        return parts.back().material;
+    }
     if (kind != Kind::bitmap) return material;
     // The right and lower border belong to the last texels. A point between two texels is solid
     // when either is (texels are closed squares).

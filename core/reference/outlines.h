@@ -38,8 +38,14 @@ struct Box {
 struct Material {
     Colour emission{0};
     Colour albedo{0};
+    // Of a stroke with a gradient: emission changes by this much per world unit along `axis`, a unit vector, and is `emission` at
+    // `origin`.
+    Colour slope{0};
+    Point origin{0}, axis{0};
 
     bool operator==(const Material&) const = default;
+    bool shines() const { return emission != Colour(0) || slope != Colour(0); }
+    Colour emission_at(Point p) const { return emission + slope * dot(p - origin, axis); }
 };
 
 // A straight piece from `a` to `b`, or the arc center + cos(t) u + sin(t) v for t in [t0, t1].
@@ -83,6 +89,12 @@ struct Body {
     Point half_size{0};         // rect: without the corner's rounding; bitmap: size of a texel
     double radius = 0;          // capsule, rect's corner
     Polygon polygon;
+    // Capsule of a stroke with a gradient: parts along it from 0 to 1, each to where it ends, with its material. Empty: one material.
+    struct Part {
+        double end = 1;
+        int material = 0;
+    };
+    std::vector<Part> parts;
     int texels_x = 0, texels_y = 0;
     std::vector<std::int32_t> texel_material;  // bitmap: -1 where it is not solid
 

@@ -160,7 +160,7 @@ void Elements::append(std::int32_t index, const std::vector<double>& knots) {
         element.piece = index;
         element.size = arc_length(piece, knots[i], knots[i + 1]);
         element.place = run + 0.5 * element.size;
-        element.radiance = element.mean = boundary_.material_of(piece).emission;
+        element.radiance = element.mean = boundary_.material_of(piece).emission_at(element.middle);
         elements_.push_back(element);
         run += element.size;
     }
@@ -175,7 +175,7 @@ bool Elements::refine(double share, double least_size) {
     double reflected = 0, length = 0;
     for (const Element& e : elements_) {
         const Colour own =
-            e.radiance - boundary_.material_of(boundary_.pieces()[std::size_t(e.piece)]).emission;
+            e.radiance - boundary_.material_of(boundary_.pieces()[std::size_t(e.piece)]).emission_at(e.middle);
         reflected += e.size * std::max({own.r, own.g, own.b});
         length += e.size;
     }
@@ -221,9 +221,9 @@ bool Elements::refine(double share, double least_size) {
 
 void Elements::restart() {
     for (Element& e : elements_) {
-        e.radiance = e.mean =
-            boundary_.material_of(boundary_.pieces()[std::size_t(e.piece)]).emission;
-        e.slope = Colour(0);
+        const Material& material = boundary_.material_of(boundary_.pieces()[std::size_t(e.piece)]);
+        e.radiance = e.mean = material.emission_at(e.middle);
+        e.slope = material.slope * dot(material.axis, e.tangent);
     }
 }
 
@@ -303,7 +303,72 @@ Colour Gather::fluence(Point p, const std::vector<Interval>& seen) const {
         } else {
             const Material& material =
                 boundary.material_of(boundary.pieces()[std::size_t(interval.piece)]);
-            if (material.emission != Colour(0)) sum += angle_of(interval) * material.emission;
+            if (material.slope != Colour(0))
+                sum += gradient_light(material, p, interval.piece, interval.from, interval.to).mean;
+            else if (material.emission != Colour(0))
+                sum += angle_of(interval) * material.emission;
+        }
+    }
+    return sum;
+}
+
+// Of a straight piece whose radiance is linear along it. At the height h above its line, and the angle t from the perpendicular
+// `ahead`, a ray meets it at h tan t along `along`: the integrals of (c + s h tan t) times 1, cos t and sin t, in closed form.
+Gather::Moments Gather::gradient_light(const Material& material, Point p, std::int32_t index, Point from, Point to) const {
+    const Piece& piece = boundary.pieces()[std::size_t(index)];
+    const Point along = unit(piece.b - piece.a);
+    Point ahead = turned(along);
+    double height = dot(piece.a - p, ahead);
+    if (height < 0) {
+        ahead = -ahead;
+        height = -height;
+    }
+    const Colour c = material.emission_at(p + ahead * height);
+    const Colour s = material.slope * (dot(material.axis, along) * height);
+    const double cos0 = dot(from, ahead), sin0 = dot(from, along), cos1 = dot(to, ahead), sin1 = dot(to, along);
+    // Towards growing angles `along` may come before or after.
+    const double sense = cross(ahead, along);
+    const double turn = std::max(std::atan2(cross(from, to), dot(from, to)), 0.0);
+    Moments m;
+    m.mean = c * turn + s * (sense * std::log(cos0 / cos1));
+    const Colour cosine = sense * (c * (sin1 - sin0) + s * (cos0 - cos1));
+    const Colour sine = sense * (c * (cos0 - cos1) + s * (std::log((1 + sin1) * cos0 / ((1 + sin0) * cos1)) - (sin1 - sin0)));
+    m.x = cosine * ahead.x + sine * along.x;
+    m.y = cosine * ahead.y + sine * along.y;
+    return m;
+}
+
+Gather::Moments Gather::moments(Point p, const std::vector<Interval>& seen) const {
+    Moments sum;
+    const auto add = [&](const Colour& radiance, Point from, Point to, double angle) {
+        sum.mean += radiance * angle;
+        sum.x += radiance * (to.y - from.y);
+        sum.y += radiance * (from.x - to.x);
+    };
+    for (const Interval& interval : seen) {
+        if (interval.piece < 0) {
+            if (sky.is_black()) continue;
+            const double from = std::atan2(interval.from.y, interval.from.x), extent = angle_of(interval);
+            sum.mean += sky.integral(from, extent);
+            sum.x += sky.cosine_integral(from, extent, 0);
+            sum.y += sky.cosine_integral(from, extent, 0.5 * kPi);
+        } else if (elements && elements->has(interval.piece)) {
+            elements->walk(interval, p, [&](const Elements::Element& e, Point from, Point to) {
+                const Colour radiance = e.mean + e.slope * mean_offset(from, to, e.middle - p, e.tangent);
+                const double far0 = std::sqrt(length_squared(from)), far1 = std::sqrt(length_squared(to));
+                if (far0 > 0 && far1 > 0) add(radiance, from / far0, to / far1, angle_between(from, to));
+            });
+        } else {
+            const Material& material =
+                boundary.material_of(boundary.pieces()[std::size_t(interval.piece)]);
+            if (material.slope != Colour(0)) {
+                const Moments part = gradient_light(material, p, interval.piece, interval.from, interval.to);
+                sum.mean += part.mean;
+                sum.x += part.x;
+                sum.y += part.y;
+            } else if (material.emission != Colour(0)) {
+                add(material.emission, interval.from, interval.to, angle_of(interval));
+            }
         }
     }
     return sum;
@@ -345,8 +410,16 @@ Colour Gather::irradiance(Point p, Point normal, const std::vector<Interval>& se
                 sum += weight * (e.mean + e.slope * mean_offset(from, to, e.middle - p, e.tangent));
             });
         } else {
-            sum += (end - start) *
-                   boundary.material_of(boundary.pieces()[std::size_t(interval.piece)]).emission;
+            const Material& material = boundary.material_of(boundary.pieces()[std::size_t(interval.piece)]);
+            if (material.slope == Colour(0)) {
+                sum += (end - start) * material.emission;
+                continue;
+            }
+            // What lies before the surface: its edges are where the sine is 1.
+            const Point from = dot(interval.from, normal) > 0 ? interval.from : turned(normal);
+            const Point to = dot(interval.to, normal) > 0 ? interval.to : -turned(normal);
+            const Moments light = gradient_light(material, p, interval.piece, from, to);
+            sum += light.x * normal.x + light.y * normal.y;
         }
     }
     return sum;
@@ -368,7 +441,7 @@ bool reflect(Elements& elements, const Boundary& boundary, const SkyIntegral& sk
             const Material& material =
                 boundary.material_of(boundary.pieces()[std::size_t(e.piece)]);
             const Colour arriving = gather.irradiance(e.middle, e.normal, seen) + from_lights[i];
-            next[i] = material.emission + 0.5 * material.albedo * arriving;
+            next[i] = material.emission_at(e.middle) + 0.5 * material.albedo * arriving;
         });
         if (!done) return false;
         brightest = change = 0;

@@ -70,6 +70,14 @@ struct Gather {
     const SkyIntegral& sky;
     const Elements* elements = nullptr;  // null: emission alone
 
+    // Integrals over all directions, of radiance and of radiance times direction.
+    struct Moments {
+        Colour mean{0}, x{0}, y{0};
+    };
+    Moments moments(Point p, const std::vector<Interval>& seen) const;
+    // Of the part of a piece without elements that is seen between two directions, whose emission is a gradient.
+    Moments gradient_light(const Material& material, Point p, std::int32_t piece, Point from, Point to) const;
+
     // Integral of radiance over all directions.
     Colour fluence(Point p, const std::vector<Interval>& seen) const;
     // Integral of radiance times cosine over the half circle about `normal`.

@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/floor/floor.h"
 #include "core/reference/boundary.h"
 #include "core/reference/delta.h"
 #include "core/reference/radiosity.h"
@@ -81,7 +82,7 @@ std::vector<char> shining_pieces(const Boundary& boundary, bool reflecting) {
     std::vector<char> shining;
     for (const Piece& piece : boundary.pieces()) {
         const Material& material = boundary.material_of(piece);
-        shining.push_back(material.emission != Colour(0) ||
+        shining.push_back(material.shines() ||
                           (reflecting && material.albedo != Colour(0)));
     }
     return shining;
@@ -95,6 +96,7 @@ struct ExactSolver::State {
     Boundary boundary;
     SkyIntegral sky;
     DeltaLights lights;
+    std::optional<Floor> floor;  // of more than an albedo
     std::optional<Elements> elements;
     bool cancelled = false;
     Share pixels_share;
@@ -110,6 +112,7 @@ struct ExactSolver::State {
           lights(scene, boundary),
           shining(shining_pieces(boundary, false)),
           sweep(fresh_sweep()) {
+        if (!scene.canvas.floor.is_plain()) floor.emplace(scene.canvas);
         is_black =
             needs_only_shining() && std::find(shining.begin(), shining.end(), 1) == shining.end();
         if (!boundary.problems().empty() || scene.render.bounces <= 0 || is_black) return;
@@ -161,6 +164,14 @@ struct ExactSolver::State {
         if (is_black) return Colour(0);
         const auto& seen = with.look(p, forward(), 0, false);
         intervals = seen.size();
+        if (floor) {
+            const Gather::Moments m = gather().moments(p, seen);
+            const double turn = 2 * std::numbers::pi;
+            const FloorPlace place = floor->at(p);
+            Colour sum = floor->lit_by(place, {m.mean / turn, m.x / turn, m.y / turn});
+            if (!lights.empty()) sum += lights.on_floor(*floor, place, p, forward(), seen);
+            return sum;
+        }
         Colour sum = gather().fluence(p, seen) / (2 * std::numbers::pi);
         if (!lights.empty()) sum += lights.mean_radiance(p, forward(), seen);
         return scene.canvas.floor_albedo * sum;

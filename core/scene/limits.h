@@ -20,6 +20,9 @@ struct Limits {
     std::size_t max_points = 200000;
     std::size_t max_lights = 1000;
     std::size_t max_sky_stops = 256;
+    // Of a stroke with a gradient: rays that meet it look their place up, sixteen of them in one invocation at most.
+    std::size_t max_emission_stops = 64;
+    std::size_t max_gradient_points = 1024;
     // One atlas; a picture is decoded to 4 bytes a texel.
     int max_bitmap_side_px = 8192;
     double max_bitmap_texels = 4096.0 * 4096.0;  // of all bitmaps together
@@ -27,6 +30,8 @@ struct Limits {
     double max_coordinate = 1e9;   // world units, absolute
     double min_view_side = 1e-6;   // world units
     double max_radiance = 1e9;     // linear; products of three stay finite in single precision
+    double min_light_height = 1e-6;  // world units: light at the floor below stays finite
+    double min_lumens_angle_deg = 0.01;  // half angle of a spot in lumens: its intensity stays finite
     double max_exposure_ev = 64;   // absolute
     // A camera's settings: all of them together stay within max_exposure_ev.
     double min_aperture = 0.1, max_aperture = 1000;  // f-number

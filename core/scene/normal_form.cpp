@@ -59,24 +59,29 @@ void fields(A& archive, Like<A, Bitmap>& shape) {
     archive(image, position, size, emission, above, albedo);
 }
 template <class A>
+void fields(A& archive, Like<A, EmissionStop>& stop) {
+    auto& [at, emission] = stop;
+    archive(at, emission);
+}
+template <class A>
 void fields(A& archive, Like<A, Shape>& shape) {
-    auto& [geometry, emission, albedo] = shape;
-    archive(geometry, emission, albedo);
+    auto& [geometry, emission, albedo, gradient] = shape;
+    archive(geometry, emission, albedo, gradient);
 }
 template <class A>
 void fields(A& archive, Like<A, PointLight>& light) {
-    auto& [position, intensity, radius] = light;
-    archive(position, intensity, radius);
+    auto& [position, intensity, radius, unit, height] = light;
+    archive(position, intensity, radius, unit, height);
 }
 template <class A>
 void fields(A& archive, Like<A, SpotLight>& light) {
-    auto& [position, direction, inner, outer, intensity] = light;
-    archive(position, direction, inner, outer, intensity);
+    auto& [position, direction, inner, outer, intensity, unit, height, tilt] = light;
+    archive(position, direction, inner, outer, intensity, unit, height, tilt);
 }
 template <class A>
 void fields(A& archive, Like<A, DirectionalLight>& light) {
-    auto& [direction, irradiance] = light;
-    archive(direction, irradiance);
+    auto& [direction, irradiance, elevation] = light;
+    archive(direction, irradiance, elevation);
 }
 template <class A>
 void fields(A& archive, Like<A, SkyStop>& stop) {
@@ -99,6 +104,17 @@ void fields(A& archive, Like<A, PixelRect>& rect) {
     archive(x, y, w, h);
 }
 
+template <class A>
+void fields(A& archive, Like<A, Gloss>& gloss) {
+    auto& [roughness, metallic, reflectance] = gloss;
+    archive(roughness, metallic, reflectance);
+}
+template <class A>
+void fields(A& archive, Like<A, FloorMaterial>& material) {
+    auto& [image, normals, tile, gloss] = material;
+    archive(image, normals, tile, gloss);
+}
+
 // What is left out is the same as what says the default: it is written out, and left out again when it is read.
 template <class A, class T>
 void with_default(A& archive, Like<A, std::optional<T>>& value, const T& standard) {
@@ -112,7 +128,7 @@ void with_default(A& archive, Like<A, std::optional<T>>& value, const T& standar
 
 template <class A>
 void fields(A& archive, Like<A, Canvas>& canvas) {
-    auto& [width, height, region, view, margin, floor] = canvas;
+    auto& [width, height, region, view, margin, floor, material] = canvas;
     archive(width, height);
     const PixelRect all{0, 0, width, height};
     const ViewRect pixels{0, 0, double(width), double(height)};
@@ -123,7 +139,7 @@ void fields(A& archive, Like<A, Canvas>& canvas) {
     } else {
         archive(region.value_or(all), view.value_or(pixels));
     }
-    archive(margin, floor);
+    archive(margin, floor, material);
 }
 template <class A>
 void fields(A& archive, Like<A, RenderSettings>& render) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -54,6 +55,19 @@ struct Polyline {
     bool closed = false;
 };
 
+// Calls segment(from, to) for every straight part of a stroke, in order.
+template <class Segment>
+void for_each_segment(const Polyline& polyline, Segment segment) {
+    const std::size_t n = polyline.points.size();
+    for (std::size_t i = 0; i + 1 < n; ++i) segment(polyline.points[i], polyline.points[i + 1]);
+    if (polyline.closed && n > 2) segment(polyline.points[n - 1], polyline.points[0]);
+}
+inline double stroke_length(const Polyline& polyline) {
+    double sum = 0;
+    for_each_segment(polyline, [&](Point a, Point b) { sum += std::hypot(b.x - a.x, b.y - a.y); });
+    return sum;
+}
+
 // What an outline was written as; problems name its key.
 enum class OutlineKey { points, d, text };
 
@@ -94,16 +108,29 @@ struct Bitmap {
 
 using Geometry = std::variant<Circle, Ellipse, Rect, Line, Polyline, Polygon, Bitmap>;
 
+// A stop of an emission that changes along a stroke. `at` is a share of its length, from 0 to 1.
+struct EmissionStop {
+    double at = 0;
+    Colour emission{0};
+};
+
 struct Shape {
     Geometry geometry;
     Colour emission{0};  // ignored for Bitmap
     Colour albedo{0};    // ignored for Bitmap
+    std::vector<EmissionStop> gradient{};  // of Line and Polyline: emission along them, linear between stops, instead of `emission`
 };
+
+// What a light's strength is given in. `radiant` is flatland's own; the others are of the world above the canvas, where a light
+// stands at a height and its light falls with the square of the distance (docs/methods/delta-lights.md).
+enum class LightUnit { radiant, candela, lumens };
 
 struct PointLight {
     Point position{0};
-    Colour intensity{0};  // radiant intensity per radian
+    Colour intensity{0};  // in `unit`; radiant: intensity per radian
     double radius = 0;    // more than 0: a disc that shines, see core/scene/lower.h
+    LightUnit unit = LightUnit::radiant;
+    double height = 0;    // above the canvas, world units; not of radiant lights
 };
 
 struct SpotLight {
@@ -111,12 +138,17 @@ struct SpotLight {
     double direction_deg = 0;
     double inner_angle_deg = 0;  // half angles, 0 <= inner <= outer <= 180
     double outer_angle_deg = 0;
-    Colour intensity{0};
+    Colour intensity{0};  // in `unit`; radiant: intensity per radian on the axis
+    LightUnit unit = LightUnit::radiant;
+    double height = 0;    // as a point light's
+    double tilt_deg = 0;  // of its axis below the horizon; not of radiant lights
 };
 
 struct DirectionalLight {
     double direction_deg = 0;  // the direction in which the light travels
     Colour irradiance{0};      // across the beam
+    // Above the horizon: then the irradiance is lux, of the world above the canvas. Without one it is flatland's.
+    std::optional<double> elevation_deg{};
 };
 
 using Light = std::variant<PointLight, SpotLight, DirectionalLight>;
@@ -141,6 +173,25 @@ struct PixelRect {
     int x = 0, y = 0, w = 0, h = 0;  // pixels
 };
 
+// What makes a floor shine (core/floor): the microfacet terms.
+struct Gloss {
+    double roughness = 0.5;    // perceptual: its square is the width of the facets' distribution
+    double metallic = 0;
+    double reflectance = 0.5;  // of what is no metal: F0 = 0.16 reflectance^2
+};
+
+// What the floor is made of, beside its albedo.
+struct FloorMaterial {
+    std::shared_ptr<const Texels> image{};    // albedo, sRGB encoded
+    std::shared_ptr<const Texels> normals{};  // directions: red right, green up, blue towards the eye; 128 is 0
+    std::optional<ViewRect> tile{};           // where one copy of these lies; they repeat. Default: the view
+    std::optional<Gloss> gloss{};
+
+    // Whether it matters where light comes from.
+    bool has_relief() const { return normals != nullptr || gloss.has_value(); }
+    bool is_plain() const { return image == nullptr && !has_relief(); }
+};
+
 struct Canvas {
     int width = 0;   // pixels
     int height = 0;  // pixels
@@ -148,6 +199,7 @@ struct Canvas {
     std::optional<ViewRect> view;  // default: one world unit is one pixel
     double margin = 0;             // world units
     Colour floor_albedo{1};
+    FloorMaterial floor;
 
     ViewRect view_or_default() const {
         return view ? *view : ViewRect{0, 0, double(width), double(height)};

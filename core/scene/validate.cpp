@@ -67,6 +67,14 @@ void validate_canvas(RangeChecks& checks, const Path& where, const Canvas& canva
         checks.between(where.key("margin"), canvas.margin, 0, limits.max_coordinate);
     const Path floor = where.key("floor");
     checks.colour(floor.key("albedo"), canvas.floor_albedo, 1);
+    if (canvas.floor.tile) {
+        validate_view(checks, floor.key("tile"), *canvas.floor.tile);
+    }
+    if (canvas.floor.gloss) {
+        checks.between(floor.key("roughness"), canvas.floor.gloss->roughness, 0, 1);
+        checks.between(floor.key("metallic"), canvas.floor.gloss->metallic, 0, 1);
+        checks.between(floor.key("reflectance"), canvas.floor.gloss->reflectance, 0, 1);
+    }
     if (width && height && canvas.region) {
         validate_region(checks, where.key("region"), canvas);
     }
@@ -143,7 +151,7 @@ public:
     void operator()(const PointLight& light) {
         checks_.between(where_.key("radius"), light.radius, 0.0, checks_.limits().max_coordinate);
         checks_.coordinates(where_.key("position"), light.position);
-        colour("intensity", light.intensity);
+        strength(light);
     }
 
     void operator()(const SpotLight& light) {
@@ -158,15 +166,35 @@ public:
                         "must be at most outer_angle, " + number_text(light.outer_angle_deg) +
                             ", is " + number_text(light.inner_angle_deg));
         }
-        colour("intensity", light.intensity);
+        strength(light);
+        if (light.unit == LightUnit::radiant) return;
+        checks_.between(where_.key("tilt"), light.tilt_deg, 0, 90);
+        const double least = checks_.limits().min_lumens_angle_deg;
+        if (light.unit == LightUnit::lumens && outer_good && light.outer_angle_deg < least) {
+            checks_.add(where_.key("outer_angle"), "out_of_range",
+                        "must be at least " + number_text(least) + " for a spot in lumens, is " +
+                            number_text(light.outer_angle_deg));
+        }
     }
 
     void operator()(const DirectionalLight& light) {
         checks_.finite(where_.key("direction"), light.direction_deg);
-        colour("irradiance", light.irradiance);
+        colour(light.elevation_deg ? "lux" : "irradiance", light.irradiance);
+        if (!light.elevation_deg) return;
+        const Path elevation = where_.key("elevation");
+        if (checks_.between(elevation, *light.elevation_deg, 0, 90) && *light.elevation_deg == 0) {
+            checks_.add(elevation, "out_of_range", "must be more than 0: at 0 it does not reach the floor");
+        }
     }
 
 private:
+    template <class PointOrSpot>
+    void strength(const PointOrSpot& light) {
+        const bool radiant = light.unit == LightUnit::radiant;
+        colour(radiant ? "intensity" : light.unit == LightUnit::candela ? "candela" : "lumens", light.intensity);
+        if (!radiant) checks_.between(where_.key("height"), light.height, checks_.limits().min_light_height, checks_.limits().max_coordinate);
+    }
+
     void colour(std::string_view key, const Colour& value) {
         checks_.colour(where_.key(key), value, checks_.limits().max_radiance);
     }

@@ -204,6 +204,41 @@ double texel_count(const Geometry& geometry) {
                                    : 0;
 }
 
+void validate_gradient(RangeChecks& checks, const Path& where, const Shape& shape) {
+    const std::vector<EmissionStop>& stops = shape.gradient;
+    if (stops.empty()) {
+        return;
+    }
+    const auto* polyline = std::get_if<Polyline>(&shape.geometry);
+    if (polyline == nullptr && !std::holds_alternative<Line>(shape.geometry)) {
+        checks.add(where, "conflict", "is for lines and polylines");
+    }
+    if (polyline != nullptr && polyline->points.size() > checks.limits().max_gradient_points) {
+        checks.add(where, "too_many",
+                   "is for polylines of at most " + std::to_string(checks.limits().max_gradient_points) +
+                       " points, this one has " + std::to_string(polyline->points.size()));
+    }
+    if (!checks.count(where, stops.size(), checks.limits().max_emission_stops, "stops")) {
+        return;
+    }
+    for (std::size_t i = 0; i < stops.size(); ++i) {
+        const Path stop = where.index(i);
+        const Path at = stop.key("at");
+        checks.colour(stop.key("emission"), stops[i].emission, checks.limits().max_radiance);
+        if (!checks.between(at, stops[i].at, 0, 1) || i == 0) {
+            continue;
+        }
+        if (stops[i].at < stops[i - 1].at) {
+            checks.add(at, "not_in_order",
+                       "must not be less than that of the stop before, " + number_text(stops[i - 1].at) +
+                           ", is " + number_text(stops[i].at));
+        } else if (i >= 2 && stops[i].at == stops[i - 2].at) {
+            checks.add(at, "too_many", "must not be that of a third stop (two make a step), is " +
+                                           number_text(stops[i].at));
+        }
+    }
+}
+
 }  // namespace
 
 void validate_shapes(RangeChecks& checks, const Path& where, const std::vector<Shape>& shapes) {
@@ -234,6 +269,7 @@ void validate_shapes(RangeChecks& checks, const Path& where, const std::vector<S
         std::visit(GeometryChecks(checks, shape_path, i), shapes[i].geometry);
         if (!std::holds_alternative<Bitmap>(shapes[i].geometry)) {
             checks.colour(shape_path.key("emission"), shapes[i].emission, limits.max_radiance);
+            validate_gradient(checks, shape_path.key("emission").key("gradient"), shapes[i]);
             checks.colour(shape_path.key("albedo"), shapes[i].albedo, 1);
         }
     }

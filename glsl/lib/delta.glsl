@@ -6,38 +6,63 @@ float cross2(vec2 a, vec2 b) { return a.x * b.y - a.y * b.x; }
 // A light stands on an outline without being hidden by it; and rounding is no wall.
 const float kDeltaSlack = 1e-3;  // px
 
-// Arrival at p: towards the light (as long as the light is far; any length where it has no distance), and irradiance across
-// the beam, shadows left out.
+// Arrival at p: towards the light (as long as the light is far; any length where it has no distance), flatland's irradiance across
+// the beam, shadows left out, and what the floor has of it: the mean radiance times 2 pi.
 struct Arrival {
     vec2 way;
     float end;      // share of `way` within which something hides the light
     vec3 strength;
+    vec3 on_floor;
+    vec3 across;    // of lights above the canvas: illuminance across the beam,
+    float up;       // and the sine of its elevation; else 0
 };
+
+const float kInversePi = 0.3183098861837907;
+
+// A spot's share this far from its axis, exact for narrow beams: (cos off - cos outer) / (cos inner - cos outer), squared.
+float spot_share(vec4 spot, float off) {
+    float ramp = spot.w <= spot.z ? (off <= spot.w ? 1.0 : 0.0)
+        : clamp(sin(0.5 * (spot.w + off)) * sin(0.5 * (spot.w - off)) / (sin(0.5 * (spot.w + spot.z)) * sin(0.5 * (spot.w - spot.z))), 0.0, 1.0);
+    return ramp * ramp;
+}
+
+// The angle between a spot's axis and the way from it.
+float off_axis(vec4 spot, float tilt, vec3 from) {
+    vec3 axis = vec3(spot.xy * cos(tilt), -sin(tilt));
+    return atan(length(cross(axis, from)), dot(axis, from));
+}
 
 Arrival arrival_at(int light, vec2 p, float least_distance) {
     vec4 head = texelFetch(lights, kDeltaLightTexels * light);
-    vec3 intensity = texelFetch(lights, kDeltaLightTexels * light + 1).rgb;
+    vec4 intensity = texelFetch(lights, kDeltaLightTexels * light + 1);
+    vec4 spot = texelFetch(lights, kDeltaLightTexels * light + 2);
     Arrival a;
     int kind = int(head.z);
+    bool raised = (kind & kDeltaRaised) != 0;
+    kind &= 3;
+    float up, level;  // sine and cosine of the light's elevation
     if (kind == kDeltaDirectional) {
         a.way = head.xy;
         a.end = 1e30;
-        a.strength = intensity;
-        return a;
+        a.strength = intensity.rgb;
+        up = head.w;
+        level = intensity.w;
+    } else {
+        a.way = head.xy - p;
+        float r = length(a.way);
+        a.end = 1.0 - kDeltaSlack / max(r, kDeltaSlack);
+        float d = raised ? length(vec2(r, head.w)) : max(r, least_distance);
+        up = head.w / d;
+        level = r / d;
+        a.strength = intensity.rgb / d;
+        if (raised) a.strength /= d;
+        // At the light itself no direction is off the axis.
+        if (kind == kDeltaSpot && (raised || r > 0.0)) a.strength *= spot_share(spot, off_axis(spot, raised ? intensity.w : 0.0, vec3(-a.way, raised ? -head.w : 0.0)));
     }
-    a.way = head.xy - p;
-    float d = length(a.way);
-    a.end = 1.0 - kDeltaSlack / max(d, kDeltaSlack);
-    a.strength = intensity / max(d, least_distance);
-    if (kind == kDeltaSpot && d > 0.0) {
-        vec4 spot = texelFetch(lights, kDeltaLightTexels * light + 2);
-        vec2 from = -a.way;
-        float off = abs(atan(cross2(spot.xy, from), dot(spot.xy, from)));
-        // (cos off - cos outer) / (cos inner - cos outer), exact for narrow beams.
-        float ramp = spot.w <= spot.z ? (off <= spot.w ? 1.0 : 0.0)
-            : clamp(sin(0.5 * (spot.w + off)) * sin(0.5 * (spot.w - off)) / (sin(0.5 * (spot.w + spot.z)) * sin(0.5 * (spot.w - spot.z))), 0.0, 1.0);
-        a.strength *= ramp * ramp;
-    }
+    a.across = a.strength;
+    a.up = raised ? up : 0.0;
+    a.on_floor = a.strength * (raised ? 2.0 * up : 1.0);
+    if (raised) a.strength *= 2.0 * kInversePi * level;
     return a;
 }
 

@@ -11,10 +11,26 @@ vec4 cosine_up_to(vec4 key) {
     return pick(sign(sine), sine, front);
 }
 
+// The direction's component that is asked for, at a key.
+vec4 direction_of(vec4 key) {
+    float along = kMoment == 1 ? axis.x : axis.y;
+    float across = kMoment == 1 ? side.x : side.y;
+    return (along + across * key) * inversesqrt(1.0 + key * key);
+}
+
 // What directions between two keys weigh.
 vec4 weight_of(vec4 a, vec4 b) {
     if (kNodes != 0) return max(cosine_up_to(b) - cosine_up_to(a), vec4(0.0));
-    return arctangent((b - a) / (1.0 + b * a));
+    vec4 angle = arctangent((b - a) / (1.0 + b * a));
+    if (kMoment == 0) return angle;
+    // The integral of a unit vector is the chord: 2 sin(angle / 2) along the middle. The angle is within a sector.
+    vec4 h2 = 0.25 * angle * angle;
+    vec4 chord = angle * (1.0 - h2 * (1.0 / 6.0 - h2 * (1.0 / 120.0 - h2 / 5040.0)));
+    vec4 ia = inversesqrt(1.0 + a * a), ib = inversesqrt(1.0 + b * b);
+    vec4 ahead = ia + ib, aside = a * ia + b * ib;
+    float along = kMoment == 1 ? axis.x : axis.y;
+    float across = kMoment == 1 ? side.x : side.y;
+    return chord * (along * ahead + across * aside) * inversesqrt(max(ahead * ahead + aside * aside, vec4(1e-30)));
 }
 
 int kind_of(float entry) { return entry < float(first_disc) ? 0 : entry < float(first_arc) ? 1 : entry < float(first_ellipse) ? 2 : 3; }
@@ -74,7 +90,7 @@ void gather_surfaces(bvec4 which, vec4 to) {
         // would, at its distance.
         vec4 turn = inversesqrt(1.0 + middle * middle) / max(depth, vec4(1e-6));
         vec4 weight = pick(vec4(0.0), turn, which);
-        add_slopes(pr - qr, pg - qg, pb - qb, middle, weight);
+        add_slopes(pr - qr, pg - qg, pb - qb, middle, kMoment != 0 ? weight * direction_of(middle) : weight);
         third += max(max(abs(pr - qr), abs(pg - qg)), abs(pb - qb)) * weight * weight * weight;
     }
 }

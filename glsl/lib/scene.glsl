@@ -10,6 +10,7 @@ layout(binding = kBitmapTexelsUnit) uniform samplerBuffer bitmap_texels;
 const int kSceneEllipses = 1;
 const int kSceneOutlines = 1;  // polylines and polygons
 const int kSceneBitmaps = 1;
+const int kSceneGradients = 1;  // of emission, along strokes
 
 const float kFar = 1e30;
 
@@ -106,10 +107,49 @@ vec3 srgb_to_linear(vec3 c) {
     return pick(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
+// Share of an edge's length at which the point nearest to p lies.
+float segment_share(vec2 p, vec4 edge) {
+    vec2 along = edge.zw - edge.xy;
+    return clamp(dot(p - edge.xy, along) / max(dot(along, along), 1e-30), 0.0, 1.0);
+}
+
+// Emission of a stroke with a gradient at p.
+vec3 gradient_emission(vec4 head, vec4 a, vec4 b, vec2 p) {
+    float share;
+    int first = int(b.y);
+    if (int(head.x) == kShapeLine) {
+        share = segment_share(p, a);
+    } else {
+        float nearest = kFar;
+        int from = int(head.z);
+        for (int i = 0; i < int(head.w); ++i) {
+            vec4 e = texelFetch(edges, from + i);
+            float d = segment_distance(p, e);
+            vec4 shares = texelFetch(edges, first + i);
+            if (d < nearest) share = mix(shares.x, shares.y, segment_share(p, e));
+            nearest = min(nearest, d);
+        }
+        first += int(head.w);
+    }
+    vec4 last = texelFetch(edges, first);
+    vec3 emission = last.rgb;
+    for (int i = 1; i < int(b.x); ++i) {
+        vec4 stop = texelFetch(edges, first + i);
+        if (share >= last.a) emission = mix(last.rgb, stop.rgb, clamp((share - last.a) / max(stop.a - last.a, 1e-9), 0.0, 1.0));
+        last = stop;
+    }
+    return emission;
+}
+
 // Emission of a shape at p, in the units of the packed scene.
 vec3 shape_emission(int shape, vec2 p) {
     int at = shape * kShapeTexels;
     vec4 light = texelFetch(shape_records, at + 1);
+    if (kSceneGradients != 0) {
+        vec4 head = texelFetch(shape_records, at);
+        vec4 b = texelFetch(shape_records, at + 3);
+        if ((int(head.x) == kShapeLine || int(head.x) == kShapePolyline) && b.x > 0.0) return gradient_emission(head, texelFetch(shape_records, at + 2), b, p);
+    }
     if (kSceneBitmaps == 0 || int(texelFetch(shape_records, at).x) != kShapeBitmap) return light.rgb;
     int texel;
     if (light.w == 0.0 ||

@@ -107,6 +107,7 @@ public:
         return "";
     }
 
+    void serve(int socket) { server_.serve(socket); }
     int port() const { return port_; }
     bool listening() const { return listening_; }
     void drain() { server_.drain(); }
@@ -129,7 +130,8 @@ private:
 
     std::string refuse_connection(Exchange& exchange) const {
         if (exchange.request_id.empty()) exchange.request_id = new_request_id();
-        const HttpProblem problem = make_problem(kind_of(exchange.fault), "");
+        const HttpProblem problem =
+            make_problem(kind_of(exchange.fault), exchange.fault == Fault::malformed ? "The request line or a header is malformed." : "");
         log_.info("refused", {{"status", std::int64_t(status_of(problem))}, {"ms", ms_since(exchange.start)}, {"id", exchange.request_id}});
         count(exchange, status_of(problem));
         return response_text(problem, exchange.request_id);
@@ -200,6 +202,8 @@ std::string HttpServer::url() const {
 }
 
 bool HttpServer::listening() const { return impl_->clients.listening(); }
+
+void HttpServer::serve_connection(int socket) { impl_->clients.serve(socket); }
 
 void HttpServer::stop() {
     // The operators' port tells until the end that it is stopping.

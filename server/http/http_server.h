@@ -27,6 +27,9 @@ public:
     std::string url() const;  // "http://127.0.0.1:8080"
     bool listening() const;   // false before start(), after stop(), and when listening failed
 
+    // Serves a connection that someone else accepted (tests/fuzz), on this thread until it ends; closes it.
+    void serve_connection(int socket);
+
     // Takes no more connections, answers what was asked, and returns when all is said.
     void stop();
 

@@ -90,6 +90,7 @@ void GuardedStream::begin(Exchange& exchange) {
     in_header_ = true;
     header_bytes_ = header_lines_ = body_bytes_ = 0;
     line_end_ = 0;
+    grammar_ = {};
 }
 
 bool GuardedStream::client_gone() const {
@@ -133,14 +134,15 @@ bool GuardedStream::fill(Clock::time_point deadline) {
 }
 
 // Counts one byte of the header section and finds its end.
-bool GuardedStream::count_header(char c) {
-    if (++header_bytes_ > limits_.header_bytes) return false;
+Fault GuardedStream::count_header(char c) {
+    if (++header_bytes_ > limits_.header_bytes) return Fault::headers_too_large;
     // One line too many is known by its first byte: the library's own count (0.18) would come at its end.
-    if (line_end_ == 2 && c != '\r' && header_lines_ > limits_.header_lines) return false;
-    if (c == '\n' && ++header_lines_ > limits_.header_lines + 2) return false;  // request line, blank line
+    if (line_end_ == 2 && c != '\r' && header_lines_ > limits_.header_lines) return Fault::headers_too_large;
+    if (c == '\n' && ++header_lines_ > limits_.header_lines + 2) return Fault::headers_too_large;  // request line, blank line
+    if (!grammar_.take(c)) return Fault::malformed;
     line_end_ = c == "\r\n\r\n"[line_end_] ? line_end_ + 1 : (c == '\r' ? 1 : 0);
     if (line_end_ == 4) in_header_ = false;
-    return true;
+    return Fault::none;
 }
 
 ssize_t GuardedStream::read(char* data, std::size_t size) {
@@ -153,10 +155,8 @@ ssize_t GuardedStream::read(char* data, std::size_t size) {
     if (in_header_) {
         std::size_t seen = 0;
         while (seen < count && in_header_) {
-            if (!count_header(buffer_[buffer_at_ + seen])) {
-                exchange_->fault = Fault::headers_too_large;
-                return -1;
-            }
+            exchange_->fault = count_header(buffer_[buffer_at_ + seen]);
+            if (exchange_->fault != Fault::none) return -1;
             ++seen;
         }
         count = seen;
@@ -165,6 +165,9 @@ ssize_t GuardedStream::read(char* data, std::size_t size) {
         if (body_bytes_ > limits_.body_bytes) {
             exchange_->fault = Fault::body_too_large;
             return -1;
+        }
+        for (std::size_t i = count - std::min<std::size_t>(count, 4); i < count; ++i) {
+            exchange_->body_end = exchange_->body_end << 8 | static_cast<unsigned char>(buffer_[buffer_at_ + i]);
         }
     }
     std::memcpy(data, buffer_.data() + buffer_at_, count);

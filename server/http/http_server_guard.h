@@ -9,6 +9,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <mutex>
@@ -19,6 +20,7 @@
 #include <httplib.h>
 
 #include "server/http/fault.h"
+#include "server/http/header_grammar.h"
 
 namespace penumbra {
 
@@ -42,6 +44,7 @@ struct Exchange {
     Fault fault = Fault::none;  // a limit that was met
     bool expects_body = false;
     bool body_read = false;
+    std::uint32_t body_end = 0;  // the last four bytes of the body, framing and all
     bool close = false;  // end the connection after the answer
     bool streaming = false;  // the answer comes in parts: each has the time that a whole one has
     bool accepts_gzip = false;
@@ -81,7 +84,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     bool fill(Clock::time_point deadline);
-    bool count_header(char c);
+    Fault count_header(char c);
 
     int socket_;
     const GuardLimits& limits_;
@@ -92,6 +95,7 @@ private:
     bool answered_ = false;
     bool in_header_ = true;
     std::size_t header_bytes_ = 0, header_lines_ = 0, body_bytes_ = 0;
+    HeaderGrammar grammar_;
     int line_end_ = 0;  // how much of CR LF CR LF has been seen
 };
 
@@ -140,6 +144,7 @@ public:
     bool draining() const { return draining_; }
     // Whether connections wait that have not been taken on: closing the socket would reset them.
     bool has_backlog() const;
+    void serve(socket_t socket) { process_and_close_socket(socket); }  // one connection, on this thread
     void widen_backlog();  // after binding: the library listens with a backlog of 5
 
 private:

@@ -115,6 +115,7 @@ ProblemKind kind_of(Fault fault) {
         case Fault::body_too_large: return ProblemKind::body_too_large;
         case Fault::timeout: return ProblemKind::request_timeout;
         case Fault::too_many_connections: return ProblemKind::too_many_connections;
+        case Fault::malformed:
         case Fault::none: break;
     }
     return ProblemKind::bad_request;

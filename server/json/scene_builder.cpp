@@ -9,6 +9,8 @@
 #include "core/scene/wording.h"
 #include "server/json/sky_picture.h"
 #include "server/json/bitmap_reader.h"
+#include "server/json/light_reader.h"
+#include "server/json/material_reader.h"
 #include "server/json/outline_reader.h"
 #include "server/json/scene_keys.h"
 #include "server/json/value_reader.h"
@@ -84,6 +86,7 @@ private:
         if (const NodeId floor_id = members.find("floor"); is_object(floor, floor_id)) {
             const Members floor_members(reader_, floor, floor_id, kFloorKeys, "a floor");
             floor_members.colour("albedo", canvas.floor_albedo);
+            read_floor_material(reader_, bitmaps_, floor, floor_members, canvas.floor);
         }
     }
 
@@ -232,17 +235,12 @@ private:
         return shape;
     }
 
-    static void read_material(const Members& members, Shape& shape) {
-        members.colour("emission", shape.emission);
-        members.colour("albedo", shape.albedo);
-    }
-
     Circle read_circle(const Path& where, NodeId id, Shape& shape) {
         const Members members(reader_, where, id, kCircleKeys, "a circle");
         Circle circle;
         members.need_pair("center", "a point [x, y]", circle.center);
         members.need_number("radius", circle.radius);
-        read_material(members, shape);
+        read_material(reader_, where, members, shape);
         return circle;
     }
 
@@ -252,7 +250,7 @@ private:
         members.need_pair("center", "a point [x, y]", ellipse.center);
         members.need_pair("radii", "two radii [x, y]", ellipse.radii);
         members.number("rotation", ellipse.rotation_deg);
-        read_material(members, shape);
+        read_material(reader_, where, members, shape);
         return ellipse;
     }
 
@@ -263,7 +261,7 @@ private:
         members.need_pair("size", "a size [width, height]", rect.size);
         members.number("rotation", rect.rotation_deg);
         members.number("corner_radius", rect.corner_radius);
-        read_material(members, shape);
+        read_material(reader_, where, members, shape);
         return rect;
     }
 
@@ -273,7 +271,7 @@ private:
         members.need_pair("from", "a point [x, y]", line.from);
         members.need_pair("to", "a point [x, y]", line.to);
         members.number("width", line.width);
-        read_material(members, shape);
+        read_stroke_material(reader_, where, members, shape);
         return line;
     }
 
@@ -283,7 +281,7 @@ private:
         members.need_points("points", polyline.points);
         members.number("width", polyline.width);
         members.boolean("closed", polyline.closed);
-        read_material(members, shape);
+        read_stroke_material(reader_, where, members, shape);
         return polyline;
     }
 
@@ -291,7 +289,7 @@ private:
         const Members members(reader_, where, id, kPolygonKeys, "a polygon");
         Polygon polygon;
         members.need_points("points", polygon.points);
-        read_material(members, shape);
+        read_material(reader_, where, members, shape);
         return polygon;
     }
 
@@ -322,32 +320,7 @@ private:
 
     Light read_light(const Path& where, NodeId id) {
         const auto type = read_type(where, id, kLightTypes, "a light, an object");
-        if (!type) {
-            return PointLight{};
-        }
-        if (*type == 0) {
-            const Members members(reader_, where, id, kPointLightKeys, "a point light");
-            PointLight light;
-            members.need_pair("position", "a point [x, y]", light.position);
-            members.need_colour("intensity", light.intensity);
-            members.number("radius", light.radius);
-            return light;
-        }
-        if (*type == 1) {
-            const Members members(reader_, where, id, kSpotKeys, "a spot light");
-            SpotLight light;
-            members.need_pair("position", "a point [x, y]", light.position);
-            members.need_number("direction", light.direction_deg);
-            members.need_number("inner_angle", light.inner_angle_deg);
-            members.need_number("outer_angle", light.outer_angle_deg);
-            members.need_colour("intensity", light.intensity);
-            return light;
-        }
-        const Members members(reader_, where, id, kDirectionalKeys, "a directional light");
-        DirectionalLight light;
-        members.need_number("direction", light.direction_deg);
-        members.need_colour("irradiance", light.irradiance);
-        return light;
+        return type ? light_of_type(reader_, where, id, *type) : PointLight{};
     }
 
     std::optional<std::size_t> read_choice(const Members& members, const Path& where,

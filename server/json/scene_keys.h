@@ -11,7 +11,8 @@ inline constexpr std::string_view kSceneKeys[] = {"version", "canvas", "sky",   
                                                   "lights",  "render", "output"};
 inline constexpr std::string_view kCanvasKeys[] = {"width", "height", "view",
                                                    "region", "margin", "floor"};
-inline constexpr std::string_view kFloorKeys[] = {"albedo"};
+inline constexpr std::string_view kFloorKeys[] = {"albedo",    "image",    "normal_map", "tile",
+                                                 "roughness", "metallic", "reflectance"};
 inline constexpr std::string_view kSkyKeys[] = {"radiance", "gradient", "image", "row", "scale"};
 inline constexpr std::string_view kStopKeys[] = {"angle", "radiance"};
 inline constexpr std::string_view kRenderKeys[] = {"method", "quality", "bounces", "tolerance", "skip", "view"};
@@ -21,6 +22,9 @@ inline constexpr std::string_view kOutputKeys[] = {"format", "bit_depth", "antia
 // An exposure that is an object: a camera's, or the automatic one's.
 inline constexpr std::string_view kCameraKeys[] = {"aperture", "shutter", "iso", "compensation"};
 inline constexpr std::string_view kAutoExposureKeys[] = {"key"};
+// Emission along a stroke.
+inline constexpr std::string_view kGradientKeys[] = {"gradient"};
+inline constexpr std::string_view kEmissionStopKeys[] = {"at", "emission"};
 inline constexpr std::string_view kColourKeys[] = {"color", "intensity"};
 
 inline constexpr std::string_view kShapeTypes[] = {"circle",   "ellipse", "rect",  "line",
@@ -43,10 +47,14 @@ inline constexpr std::string_view kPathKeys[] = {"type", "emission", "albedo", "
 inline constexpr std::string_view kTextKeys[] = {"type", "emission", "albedo", "text", "position", "size", "anchor"};
 
 inline constexpr std::string_view kLightTypes[] = {"point", "spot", "directional"};
-inline constexpr std::string_view kPointLightKeys[] = {"type", "position", "intensity", "radius"};
+inline constexpr std::string_view kPointLightKeys[] = {"type",    "position", "intensity", "radius",
+                                                       "candela", "lumens",   "height"};
 inline constexpr std::string_view kSpotKeys[] = {"type",        "position",    "direction",
-                                                 "inner_angle", "outer_angle", "intensity"};
-inline constexpr std::string_view kDirectionalKeys[] = {"type", "direction", "irradiance"};
+                                                 "inner_angle", "outer_angle", "intensity",
+                                                 "candela",     "lumens",      "height",
+                                                 "tilt"};
+inline constexpr std::string_view kDirectionalKeys[] = {"type", "direction", "irradiance", "lux",
+                                                        "elevation"};
 
 inline constexpr std::string_view kQualities[] = {"draft", "standard", "high"};
 inline constexpr std::string_view kSkips[] = {"all", "none"};

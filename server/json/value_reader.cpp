@@ -332,4 +332,10 @@ void Members::need_integer(std::string_view key, int& to, std::string_view allow
     }
 }
 
+void refuse(ValueReader& reader, const Members& members, const Path& where, std::string_view key, std::string_view message) {
+    if (const NodeId id = members.find(key); id != kNoNode) {
+        reader.report(where.key(key), id, "conflict", [&] { return std::string(message); });
+    }
+}
+
 }  // namespace penumbra

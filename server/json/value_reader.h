@@ -101,4 +101,7 @@ private:
     std::string_view of_what_;
 };
 
+// Reports a key that may not stand where it does.
+void refuse(ValueReader& reader, const Members& members, const Path& where, std::string_view key, std::string_view message);
+
 }  // namespace penumbra

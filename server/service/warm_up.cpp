@@ -52,6 +52,40 @@ Scene dark(Scene scene) {
     return scene;
 }
 
+std::shared_ptr<const Texels> texel(std::uint8_t r, std::uint8_t g, std::uint8_t b) { return std::make_shared<Texels>(Texels{1, 1, {r, g, b, 255}}); }
+
+// One light of each kind, of flatland and above it.
+Scene with_lights(Scene scene) {
+    scene.lights.push_back(PointLight{{30, 20}, Colour(3)});
+    SpotLight spot{{50, 20}, 90, 10, 20, Colour(30)};
+    spot.unit = LightUnit::candela;
+    spot.height = 5;
+    scene.lights.push_back(spot);
+    scene.lights.push_back(DirectionalLight{100, Colour(0.2)});
+    return scene;
+}
+
+Scene with_bounces(Scene scene) {
+    for (Shape& shape : scene.shapes) shape.albedo = Colour(0.5);
+    scene.render.bounces = 1;
+    return scene;
+}
+
+Scene with_floor(Scene scene, bool relief, bool gloss) {
+    scene.canvas.floor.image = texel(200, 180, 160);
+    if (relief) scene.canvas.floor.normals = texel(150, 128, 240);
+    if (gloss) scene.canvas.floor.gloss = Gloss{};
+    return scene;
+}
+
+Scene with_gradient(Scene scene) {
+    Shape stroke;
+    stroke.geometry = Line{{8, 30}, {40, 36}, 2};
+    stroke.gradient = {{0, Colour(1)}, {1, Colour(3)}};
+    scene.shapes.push_back(std::move(stroke));
+    return scene;
+}
+
 Geometry bitmap() {
     auto texels = std::make_shared<Texels>(Texels{4, 4, {}});
     for (int i = 0; i < 16; ++i) {
@@ -93,6 +127,19 @@ std::vector<WarmUpScene> warm_up_scenes(WarmUp extent) {
         picture.shapes.push_back({bitmap(), Colour(0), Colour(0)});
         picture.output.format = "pfm";
         add("bitmap, linear", std::move(picture));
+        for (std::size_t sky = 0; sky < kSkies.size(); ++sky) {
+            for (const bool arcs : {false, true}) {
+                // With a sky, or arcs, these are rarer.
+                if (!all && (sky > 0 || arcs)) continue;
+                const Scene scene = scene_of(arcs, false, Sky3(sky), size);
+                const std::string kind = std::string(arcs ? "arcs, " : "") + kSkies[sky];
+                add("bounces, lights, " + kind, with_bounces(with_lights(scene)));
+                add("relief, lights, " + kind, with_floor(with_lights(scene), true, false));
+                if (all) add("gloss, lights, " + kind, with_floor(with_lights(scene), true, true));
+                add("gradient of emission, " + kind, with_gradient(scene));
+            }
+        }
+        add("floor picture", with_floor(scene_of(false, false, Sky3::none, size), false, false));
         for (const Quality quality : {Quality::standard, Quality::draft, Quality::high}) {
             for (const char* method : {"hrc", "rc", "rc_fix"}) {
                 // What `auto` takes for dense scenes.

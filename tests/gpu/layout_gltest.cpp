@@ -16,6 +16,7 @@
 #include "glsl/delta.h"
 #include "glsl/distance.h"
 #include "glsl/exact.h"
+#include "glsl/floor.h"
 #include "glsl/hrc.h"
 #include "glsl/jump.h"
 #include "glsl/loop_probe.h"
@@ -156,6 +157,10 @@ std::vector<Layout> layouts() {
         {"exact_reflect.comp", sizeof(glsl::ExactParams), exact_fields(), glsl::kExactGroupX, glsl::kExactGroupY},
         {"delta_lists.comp", sizeof(glsl::DeltaParams), delta_fields(), glsl::kDeltaGroupX, glsl::kDeltaGroupY},
         {"delta.comp", sizeof(glsl::DeltaParams), delta_fields(), glsl::kDeltaGroupX, glsl::kDeltaGroupY},
+        {"floor.comp", sizeof(glsl::FloorParams),
+         {FIELD(FloorParams, origin), FIELD(FloorParams, extent), FIELD(FloorParams, first_pixel), FIELD(FloorParams, radiance_scale),
+          FIELD(FloorParams, pad0)},
+         glsl::kFloorGroupX, glsl::kFloorGroupY},
         {"delta_nodes.comp", sizeof(glsl::DeltaParams), delta_fields(), glsl::kDeltaGroupX, glsl::kDeltaGroupY},
         {"hrc_low.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},
         {"hrc_low_half.comp", sizeof(glsl::HrcParams), hrc_fields(), glsl::kHrcGroupX, glsl::kHrcGroupY},

@@ -32,7 +32,7 @@ pid_t start(const std::string& program, const std::vector<std::string>& argument
     std::vector<std::string> variables;
     for (char** entry = environ; *entry; ++entry) variables.emplace_back(*entry);
     for (const auto& [name, value] : environment) {
-        std::erase_if(variables, [&](const std::string& old) { return old.starts_with(name + "="); });
+        std::erase_if(variables, [start = name + "="](const std::string& old) { return old.starts_with(start); });
         variables.push_back(name + "=" + value);
     }
     std::vector<char*> envp;

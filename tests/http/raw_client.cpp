@@ -25,6 +25,8 @@ RawClient::RawClient(int port) {
     if (::connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) std::abort();
 }
 
+void RawClient::end() { ::shutdown(fd_, SHUT_WR); }
+
 RawClient::~RawClient() { ::close(fd_); }
 
 bool RawClient::send(std::string_view bytes) {

@@ -15,6 +15,7 @@ public:
     RawClient& operator=(const RawClient&) = delete;
 
     bool send(std::string_view bytes);  // false when the server has closed
+    void end();                         // nothing more will be sent
     // One response: its head and the body that its Content-Length announces. "" when none came.
     std::string receive();
     bool closed_by_server();  // waits for the end

@@ -265,6 +265,58 @@ TEST(Lamps, ShadowsAreTheExactSolversToThePixel) {
     }
 }
 
+// Above the canvas, on every method, with shadows and bounces.
+TEST(Lamps, InLumensAndLuxAreTheExactSolvers) {
+    Scene scene = half_a_room();
+    scene.sky.radiance = Colour(0);
+    for (Shape& one : scene.shapes) one.emission = Colour(0);
+    PointLight lamp{{20.3, 60.2}, {9000, 8000, 6000}};
+    lamp.unit = LightUnit::lumens;
+    lamp.height = 12;
+    PointLight near = lamp;
+    near.position = {70.1, 20.2};
+    near.unit = LightUnit::candela;
+    near.height = 0.6;
+    near.intensity = {2, 3, 4};
+    SpotLight spot{{80, 12}, 130, 10, 25, {20000, 30000, 40000}};
+    spot.unit = LightUnit::lumens;
+    spot.height = 30;
+    spot.tilt_deg = 40;
+    SpotLight level = spot;
+    level.position = {-30.7, -20.3};
+    level.direction_deg = 45;
+    level.unit = LightUnit::candela;
+    level.height = 6;
+    level.tilt_deg = 0;
+    DirectionalLight sun{100, {0.3, 0.2, 0.1}};
+    sun.elevation_deg = 35;
+    scene.lights = {lamp, near, spot, level, sun};
+    const reference::Solution truth = reference::solve(scene);
+    for (const char* method : {"exact", "rc", "rc_fix", "hrc", "reference"}) {
+        scene.render.method = method;
+        const ErrorFigures e = std::get<ErrorFigures>(error_figures(render_linear(scene), truth.image));
+        EXPECT_LT(*e.rel, 2e-5) << method;
+        EXPECT_LT(*e.max, 2e-3) << method;
+    }
+    scene.render.method = "exact";
+    scene.render.bounces = 1;
+    for (Shape& one : scene.shapes) one.albedo = Colour(0.7, 0.5, 0.3);
+    // Hard edges of shadows on walls are as sharp as an element.
+    const ErrorFigures e = std::get<ErrorFigures>(error_figures(render_linear(scene), reference::solve(scene).image));
+    EXPECT_LT(*e.rel, 4e-3);
+}
+
+TEST(Lamps, HeightsAreWorldUnits) {
+    Scene scene = canvas(64, 48);
+    scene.canvas.view = ViewRect{0, 0, 8, 6};
+    PointLight lamp{{4, 3}, Colour(12)};
+    lamp.unit = LightUnit::candela;
+    lamp.height = 2;
+    scene.lights = {lamp};
+    const double r = std::hypot(0.0625, 0.0625);
+    EXPECT_NEAR(render_linear(scene).at(32, 24)[0], 12 * 2 / std::pow(r * r + 4, 1.5) / kPi, 1e-6);
+}
+
 TEST(Lamps, ManyLightsAddUp) {
     Scene scene = half_a_room();
     scene.sky.radiance = Colour(0);

@@ -66,7 +66,7 @@ search_include() { grep -E "^[^:]*:[0-9]+:($1)" || true; }
 # ---- rules: each prints its breaches -------------------------------------------------------------
 
 readonly gl_headers='glad/|EGL/|GL/|GLES[0-9]*/|KHR/|GL/osmesa'
-readonly gl_free=(core/scene core/plan core/image core/outline core/film core/views core/reference core/compare)
+readonly gl_free=(core/scene core/plan core/image core/outline core/film core/floor core/views core/reference core/compare)
 
 # core knows no server, JSON, HTTP, log or command line, and reads no environment.
 rule_core_knows_no_server() {
@@ -105,7 +105,7 @@ rule_public_headers_are_clean() {
 rule_layers() {
     files "$cpp" core/scene | includes | search_include 'core/[a-rt-z_]|core/s[a-bd-z]|glsl/'
     files "$cpp" core/image | includes | search_include 'core/(plan|gl|passes|reference|renderer|film|outline)'
-    files "$cpp" core/film core/outline core/views | includes | search_include 'core/(plan|gl|passes|reference|compare|renderer)'
+    files "$cpp" core/film core/floor core/outline core/views | includes | search_include 'core/(plan|gl|passes|reference|compare|renderer)'
     # Of the exact solver the plan knows the scene's outline, what a point sees of it, and the sky: not the light.
     files "$cpp" core/plan | includes | search_include 'core/(gl|passes|renderer)|core/reference/(solver|radiosity|delta)'
     files "$cpp" core/reference core/compare | includes | search_include 'core/(gl|passes|plan|renderer)'
@@ -121,6 +121,7 @@ rule_one_door_each() {
     files "$cpp" core server | grep -v '^server/cli/' | includes | search_include 'CLI/|CLI11'
     files "$cpp" core server | grep -v '^core/gl/' | includes | search_include "$gl_headers"
     files "$cpp" core server | grep -v '^core/outline/' | includes | search_include 'ft2build\.h|freetype/'
+    files "$cpp" core server | grep -v '^server/redis/' | includes | search_include 'hiredis/'
     files "$cpp" core server | grep -v '^core/image/' | includes | search_include 'spng\.h|libdeflate\.h|stb'
 }
 

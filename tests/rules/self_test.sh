@@ -127,6 +127,7 @@ plant one_door_each core/passes/x.cpp '#include <glad/gl.h>'
 plant one_door_each server/http/x.cpp '#include <EGL/egl.h>'
 plant one_door_each core/plan/x.cpp '#include <libdeflate.h>'
 plant one_door_each server/json/x.cpp '#include <ft2build.h>'
+plant one_door_each server/cli/x.cpp '#include <hiredis/hiredis.h>'
 
 plant statuses_in_problem_cpp server/http/x.cpp 'response.status = 404;'
 plant statuses_in_problem_cpp server/http/x.cpp 'response.status = 500;'

@@ -40,7 +40,10 @@ TEST(NormalForm, EveryValueShows) {
                  {"type": "polygon", "points": [[1, 2], [3, 4], [5, 7]]}],
       "lights": [{"type": "point", "position": [1, 2], "intensity": 1},
                  {"type": "spot", "position": [1, 2], "direction": 5, "inner_angle": 10, "outer_angle": 20, "intensity": 1},
-                 {"type": "directional", "direction": 5, "irradiance": 1}]})";
+                 {"type": "directional", "direction": 5, "irradiance": 1},
+                 {"type": "point", "position": [1, 2], "lumens": 1, "height": 3},
+                 {"type": "spot", "position": [1, 2], "direction": 5, "inner_angle": 10, "outer_angle": 20, "candela": 1, "height": 3},
+                 {"type": "directional", "direction": 5, "lux": 1, "elevation": 30}]})";
     std::map<std::string, std::string> seen{{form(base), "base"}};
     const auto differs = [&](const std::string& pointer, const std::string& value) {
         const std::string changed = form(base, {{pointer, value}});
@@ -53,6 +56,13 @@ TEST(NormalForm, EveryValueShows) {
     };
     differs("/canvas/margin", "2");
     differs("/canvas/floor", "{\"albedo\": 0.5}");
+    const std::string picture = R"("data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==")";
+    for (const std::string& floor : {R"("image": )" + picture, R"("normal_map": )" + picture, R"("tile": [0, 0, 8, 8], "image": )" + picture,
+                                    std::string(R"("roughness": 0.4)"), std::string(R"("metallic": 0.4)"), std::string(R"("reflectance": 0.4)")})
+        differs("/canvas/floor", "{" + floor + "}");
+    differs("/shapes/3/emission", R"({"gradient": [{"at": 0.5, "emission": 1}]})");
+    differs("/shapes/3/emission", R"({"gradient": [{"at": 0.6, "emission": 1}]})");
+    differs("/shapes/4/emission", R"({"gradient": [{"at": 0.5, "emission": 2}]})");
     differs("/sky/gradient/1/angle", "91");
     differs("/sky/gradient/1/radiance", "3");
     differs("/shapes/0/center/1", "5");
@@ -71,6 +81,9 @@ TEST(NormalForm, EveryValueShows) {
         differs(std::string("/lights/1/") + path, "15");
     }
     for (const char* path : {"direction", "irradiance"}) differs(std::string("/lights/2/") + path, "7");
+    for (const char* path : {"position/0", "lumens", "height"}) differs(std::string("/lights/3/") + path, "7");
+    for (const char* path : {"position/0", "direction", "outer_angle", "candela", "height", "tilt"}) differs(std::string("/lights/4/") + path, "25");
+    for (const char* path : {"direction", "lux", "elevation"}) differs(std::string("/lights/5/") + path, "7");
     differs("/render/method", "rc");
     differs("/render/quality", "high");
     differs("/render/bounces", "1");

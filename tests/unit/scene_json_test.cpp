@@ -232,6 +232,46 @@ TEST(SceneJson, EveryLight) {
     EXPECT_EQ(sun.irradiance, Colour(1));
 }
 
+TEST(SceneJson, LightsAboveTheCanvas) {
+    const auto point = only_light<PointLight>(R"({"type": "point", "position": [5, 6], "lumens": [1, 2, 3], "height": 4})");
+    EXPECT_EQ(point.unit, LightUnit::lumens);
+    EXPECT_EQ(point.intensity, Colour(1, 2, 3));
+    EXPECT_EQ(point.height, 4);
+    const auto spot = only_light<SpotLight>(
+        R"({"type": "spot", "position": [5, 6], "direction": 45, "inner_angle": 10, "outer_angle": 25, "candela": 4, "height": 2, "tilt": 60})");
+    EXPECT_EQ(spot.unit, LightUnit::candela);
+    EXPECT_EQ(spot.height, 2);
+    EXPECT_EQ(spot.tilt_deg, 60);
+    const auto sun = only_light<DirectionalLight>(R"({"type": "directional", "direction": 100, "lux": 5, "elevation": 30})");
+    EXPECT_EQ(sun.irradiance, Colour(5));
+    EXPECT_EQ(sun.elevation_deg, 30);
+    EXPECT_FALSE(only_light<DirectionalLight>(R"({"type": "directional", "direction": 100, "irradiance": 5})").elevation_deg);
+}
+
+TEST(SceneJson, GradientsOfEmission) {
+    const Scene scene = good(with_shape(R"({"type": "polyline", "points": [[1, 1], [9, 9]], "albedo": 0.5,
+        "emission": {"gradient": [{"at": 0.25, "emission": "#ff0000"}, {"at": 1, "emission": {"color": 0.5, "intensity": 4}}]}})"));
+    const Shape& shape = scene.shapes.at(0);
+    ASSERT_EQ(shape.gradient.size(), 2u);
+    EXPECT_EQ(shape.gradient[0].at, 0.25);
+    EXPECT_EQ(shape.gradient[0].emission, Colour(1, 0, 0));
+    EXPECT_EQ(shape.gradient[1].emission, Colour(2));
+    EXPECT_EQ(shape.albedo, Colour(0.5));
+    EXPECT_EQ(shape.emission, Colour(0));
+}
+
+TEST(SceneJson, FloorsOfMoreThanAnAlbedo) {
+    const std::string picture = R"("data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==")";
+    const Scene scene = good(R"({"version": 1, "canvas": {"width": 4, "height": 4, "floor": {"image": )" + picture + R"(, "normal_map": )" +
+                             picture + R"(, "tile": [1, 2, 3, 4], "metallic": 0.25}}})");
+    const FloorMaterial& floor = scene.canvas.floor;
+    EXPECT_TRUE(floor.image && floor.normals);
+    EXPECT_EQ(floor.tile->h, 4);
+    EXPECT_EQ(floor.gloss->metallic, 0.25);
+    EXPECT_EQ(floor.gloss->roughness, Gloss{}.roughness);
+    EXPECT_FALSE(good(R"({"version": 1, "canvas": {"width": 4, "height": 4}})").canvas.floor.gloss);
+}
+
 Colour emission(const std::string& colour) {
     const Scene scene = good(with_shape(
         R"({"type": "circle", "center": [1, 1], "radius": 1, "emission": )" + colour + "}"));

@@ -27,8 +27,11 @@ BEYOND_BY_NAME = {
     "bit_depth_32_of_png": "one key against another",
     "look_without_agx": "one key against another",
     "white_without_its_curve": "one key against another",
+    "spot_lumens_too_narrow": "an angle against the unit",
+    "floor_tile_alone": "one key against others",
     "region_outside": "a pixel against the canvas",
     "region_too_wide": "a part against the canvas",
+    "path_far": "where the path data leads",
 }
 
 

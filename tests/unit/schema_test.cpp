@@ -50,6 +50,10 @@ std::vector<Object> objects() {
         {"/properties/canvas", kCanvasKeys, R"({"version": 1, "canvas": {}})", "/canvas"},
         {"/properties/canvas/properties/floor", kFloorKeys,
          R"({"version": 1, "canvas": {"width": 1, "height": 1, "floor": {}}})", "/canvas/floor"},
+        {"/$defs/emission_gradient", kGradientKeys, "", ""},
+        {"/$defs/emission_gradient/properties/gradient/items", kEmissionStopKeys,
+         with_shape(R"({"type": "line", "from": [1, 1], "to": [5, 5], "emission": {"gradient": [{}]}})"),
+         "/shapes/0/emission/gradient/0"},
         {"/properties/sky", kSkyKeys, document(R"(, "sky": {})"), "/sky"},
         {"/properties/sky/properties/gradient/items", kStopKeys,
          document(R"(, "sky": {"gradient": [{}]})"), "/sky/gradient/0"},
@@ -130,8 +134,12 @@ TEST(Schema, TheSameKeysAreRequired) {
                 required.insert(pointer.substr(start.size()));
             }
         }
-        EXPECT_EQ(strings_of(at(object.schema).value("required", json::array())), required)
-            << object.schema;
+        Words listed = strings_of(at(object.schema).value("required", json::array()));
+        // Of several ways to say one thing the parser asks for the first.
+        if (at(object.schema).contains("oneOf")) {
+            listed.merge(strings_of(at(object.schema).at("oneOf").at(0).at("required")));
+        }
+        EXPECT_EQ(listed, required) << object.schema;
     }
 }
 
@@ -178,6 +186,7 @@ TEST(Schema, ListsHaveTheParsersLimits) {
     EXPECT_EQ(at("/properties/shapes/maxItems"), limits.max_shapes);
     EXPECT_EQ(at("/properties/lights/maxItems"), limits.max_lights);
     EXPECT_EQ(at("/properties/sky/properties/gradient/maxItems"), limits.max_sky_stops);
+    EXPECT_EQ(at("/$defs/emission_gradient/properties/gradient/maxItems"), limits.max_emission_stops);
     EXPECT_EQ(at("/$defs/polygon/properties/points/maxItems"), limits.max_points_per_shape);
     EXPECT_EQ(at("/$defs/polyline/properties/points/maxItems"), limits.max_points_per_shape);
     EXPECT_EQ(at("/properties/canvas/properties/width/maximum"), limits.max_canvas_side_px);

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// What the files of the method `exact` share.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "core/passes/exact_pass.h"
+
+namespace penumbra {
+
+inline constexpr int kLevels = 4;  // cells of 8, 4, 2 and 1 pixels
+
+// Iterations that the solver spends on one point in one dispatch at most (exact_solve.comp).
+inline constexpr std::uint64_t kMostWork = 30'000;
+
+inline int divided_up(int a, int b) { return (a + b - 1) / b; }
+
+inline gl::StorageBuffer at_least(gl::StorageBuffer buffer, GLenum format, std::size_t bytes) {
+    if (buffer && buffer.bytes() >= bytes) return buffer;
+    return gl::StorageBuffer(format, bytes);
+}
+
+// Where the points of one level are listed, and how many of them.
+struct LevelPoints {
+    std::size_t first = 0;        // in the list of points
+    std::size_t of_tile = 0;      // room for each tile
+    std::size_t first_count = 0;  // in the counters
+    std::size_t first_ask = 0;    // in the words of what is asked for
+
+    void write_to(glsl::ExactParams& params) const {
+        params.first_point = static_cast<int>(first);
+        params.tile_points = static_cast<int>(of_tile);
+        params.first_count = static_cast<int>(first_count);
+        params.first_ask = static_cast<int>(first_ask);
+    }
+};
+
+// What the steps of one frame share.
+struct ExactPass::Band {
+    glsl::ExactParams params{};
+    gl::BufferTexture root_entries, root_lights, sectors;
+    std::array<gl::BufferTexture, 3> sky;  // by moment
+    gl::BufferTexture surfaces, materials;
+    gl::Texture2D value, slope_x, slope_y, leaf, lights;
+    glm::ivec2 coarse_tiles{0};
+    std::array<LevelPoints, kLevels> levels{};
+    bool always_finishes = false;
+    glm::ivec2 area{0};  // px that its lists cover
+};
+
+}  // namespace penumbra
