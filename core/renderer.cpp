@@ -81,12 +81,8 @@ struct Renderer::Impl {
         info.max_texture_side = gl_info.max_texture_side;
         info.max_texture_buffer_texels = gl_info.max_texture_buffer_texels;
         info.max_group_invocations = gl_info.max_group_invocations;
-        limits.max_texture_side = gl_info.max_texture_side;
-        limits.max_buffer_texels = static_cast<std::size_t>(gl_info.max_texture_buffer_texels);
         info.max_loop_iterations = gl::measure_loop_limit(options.shader_dir);
-        limits.max_loop_iterations = info.max_loop_iterations;
-        limits.software = gl_info.software;
-        if (!gl_info.software) limits.max_texture_bytes = std::size_t(8) << 30;
+        limits = device_limits(info.max_texture_side, info.max_texture_buffer_texels, info.max_loop_iterations, gl_info.software);
         // About 10 ms a dispatch on two cores of llvmpipe; a GPU takes a hundred times that.
         const std::size_t factor = gl_info.software ? 1 : 128;
         settings = {factor * 6'000'000, factor * 300'000, factor * 1'000'000, &textures};
