@@ -35,8 +35,8 @@ struct DeltaPass::Lists {
 
 DeltaPass::DeltaPass(const std::string& shader_dir)
     : lists_("delta_lists.comp", sizeof(glsl::DeltaParams), shader_dir),
-      nodes_("delta_nodes.comp", sizeof(glsl::DeltaParams), shader_dir),
       pixels_("delta.comp", sizeof(glsl::DeltaParams), shader_dir),
+      nodes_("delta_nodes.comp", sizeof(glsl::DeltaParams), shader_dir),
       counters_(GL_R32UI, 8) {}
 
 int DeltaPass::make_lists(const Plan& plan, glm::ivec2 origin, glm::ivec2 area, Lists& lists) {
