@@ -303,6 +303,8 @@ void GuardedServer::serve_connection(GuardedStream& stream) {
         exchange.client_gone = [&stream] { return stream.client_gone(); };
         t_exchange = &exchange;
         stream.begin(exchange);
+        // A client that asks without a pause would keep its thread for ever, and those that wait for one out.
+        exchange.close = waiting_ > 0;
         const bool go_on = serve_request(stream, exchange, draining_);
         t_exchange = nullptr;
         if (!go_on) return;

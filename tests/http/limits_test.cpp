@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the guard holds: sizes of bodies and headers, framing, and time.
+#include <atomic>
 #include <chrono>
 #include <thread>
 #include <vector>
@@ -210,6 +211,35 @@ TEST(Limits, IdleConnectionsGiveWayToNewOnes) {
     ASSERT_TRUE(result);
     EXPECT_EQ(result->status, 200);
     EXPECT_LT(steady_clock::now() - start, milliseconds(900));
+}
+
+TEST(Limits, BusyConnectionsGiveWayToo) {
+    Config config;
+    config.queue_capacity = 1;
+    config.spare_http_threads = 2;
+    const Service service(config);
+    std::atomic<bool> ending{false};
+    std::vector<std::thread> busy;  // more than there are threads, each asking without a pause
+    for (int i = 0; i < 8; ++i) {
+        busy.emplace_back([&] {
+            auto client = service.client();
+            client.set_keep_alive(true);
+            while (!ending) {
+                const auto result = client.Get("/healthz");
+                EXPECT_TRUE(result && result->status == 200);
+            }
+        });
+    }
+    std::this_thread::sleep_for(milliseconds(200));
+    const auto start = steady_clock::now();
+    for (int i = 0; i < 5; ++i) {
+        const auto result = service.client().Get("/healthz");
+        EXPECT_TRUE(result && result->status == 200);
+    }
+    const auto took = steady_clock::now() - start;
+    ending = true;
+    for (std::thread& thread : busy) thread.join();
+    EXPECT_LT(took, milliseconds(3000));
 }
 
 TEST(Limits, TooManyConnectionsAreRefusedAtOnce) {
