@@ -8,6 +8,7 @@
 #include <thread>
 #include <type_traits>
 
+#include "core/error_view.h"
 #include "core/film/exposure.h"
 #include "core/gl/checkpoint.h"
 #include "core/gl/context.h"
@@ -21,6 +22,8 @@
 #include "core/passes/distance_pass.h"
 #include "core/passes/exact_pass.h"
 #include "core/passes/floor_pass.h"
+#include "core/passes/field_view.h"
+#include "core/passes/frame_look.h"
 #include "core/passes/hrc_pass.h"
 #include "core/passes/jump_flood_pass.h"
 #include "core/passes/rc_fix_pass.h"
@@ -38,7 +41,6 @@
 #include "core/plan/skip.h"
 #include "core/scene/lower.h"
 #include "core/scene/words.h"
-#include "core/views/views.h"
 #include "glsl/cascade.h"
 #include "glsl/distance.h"
 #include "glsl/exact.h"
@@ -79,12 +81,8 @@ struct Renderer::Impl {
         info.max_texture_side = gl_info.max_texture_side;
         info.max_texture_buffer_texels = gl_info.max_texture_buffer_texels;
         info.max_group_invocations = gl_info.max_group_invocations;
-        limits.max_texture_side = gl_info.max_texture_side;
-        limits.max_buffer_texels = static_cast<std::size_t>(gl_info.max_texture_buffer_texels);
         info.max_loop_iterations = gl::measure_loop_limit(options.shader_dir);
-        limits.max_loop_iterations = info.max_loop_iterations;
-        limits.software = gl_info.software;
-        if (!gl_info.software) limits.max_texture_bytes = std::size_t(8) << 30;
+        limits = device_limits(info.max_texture_side, info.max_texture_buffer_texels, info.max_loop_iterations, gl_info.software);
         // About 10 ms a dispatch on two cores of llvmpipe; a GPU takes a hundred times that.
         const std::size_t factor = gl_info.software ? 1 : 128;
         settings = {factor * 6'000'000, factor * 300'000, factor * 1'000'000, &textures};
@@ -92,9 +90,8 @@ struct Renderer::Impl {
 
     RenderResult render(const Scene& scene, const std::string& not_exact = {});
     Pixels constant_picture(const Plan& plan, const Scene& scene, GLenum format, Recorder& record);
-    Image8 draw_view(const Plan& plan, const Scene& scene, const DistanceField& field, const ShapeLists& lists);
     double exposure_of(const Plan& plan, const Scene& scene, const FrameLight& light, Recorder& record);
-    gl::Texture2D render_hrc(const Plan& plan, const DistanceField& field, Recorder& record);
+    gl::Texture2D render_hrc(const Plan& plan, const DistanceField& field, FrameLook& look, Recorder& record);
     void check_thread() const {
         if (std::this_thread::get_id() != thread)
             throw DeviceError("The renderer was used on another thread than the one that made it.");
@@ -125,7 +122,7 @@ struct Renderer::Impl {
 };
 
 // ---- hrc: one quadrant after another; its ray pieces are kept from the shortest up, then merged from the longest down.
-gl::Texture2D Renderer::Impl::render_hrc(const Plan& plan, const DistanceField& field, Recorder& record) {
+gl::Texture2D Renderer::Impl::render_hrc(const Plan& plan, const DistanceField& field, FrameLook& look, Recorder& record) {
     constexpr const char* kNames[] = {"right", "down", "left", "up"};
     gl::Texture2D sum;
     if (!plan.hrc.aligned())
@@ -148,6 +145,7 @@ gl::Texture2D Renderer::Impl::render_hrc(const Plan& plan, const DistanceField& 
             });
             settings.give(std::move(fluence));
             fluence = std::move(merged);
+            look.see_level(plan, q, n, fluence);
         }
         record.pass(side + " gather", plan.hrc.points, [&] { return hrc.gather(plan, q, fluence, settings, sum); });
         settings.give(std::move(fluence));
@@ -215,36 +213,6 @@ double Renderer::Impl::exposure_of(const Plan& plan, const Scene& scene, const F
     return exposure_factor(scene.output, average.value());
 }
 
-// A look into the frame instead of its light: drawn on the host, of the part that is shown.
-Image8 Renderer::Impl::draw_view(const Plan& plan, const Scene& scene, const DistanceField& field, const ShapeLists& lists) {
-    ViewField seen{plan.shown.size, {}};
-    const glm::ivec2 border = plan.grid.border + plan.shown.first;
-    const bool empty = plan.shape_slices.empty();
-    std::vector<float> grid;
-    if (!empty) {
-        grid.resize(static_cast<std::size_t>(plan.grid.size.x) * static_cast<std::size_t>(plan.grid.size.y));
-        field.distance.read(GL_RED, GL_FLOAT, grid.data());
-    }
-    for (int y = 0; y < seen.size.y; ++y)
-        for (int x = 0; x < seen.size.x; ++x) {
-            const glm::ivec2 at = glm::ivec2(x, y) + border;
-            const auto i = static_cast<std::size_t>(at.y) * static_cast<std::size_t>(plan.grid.size.x) + static_cast<std::size_t>(at.x);
-            seen.distance.push_back(empty ? static_cast<float>(plan.grid.diagonal_px) : grid[i]);
-        }
-    if (scene.render.view == "distance") return draw_distance(seen);
-    if (scene.render.view == "normals") return draw_normals(seen);
-    // Without lists every tile asks every shape.
-    const int side = glsl::kDistanceTile;
-    glm::ivec2 tiles = lists.tiles;
-    std::vector<int> counts(lists.tile_count(), 0);
-    for (std::size_t i = 0; i < lists.ranges.size(); ++i) counts[i % counts.size()] += lists.ranges[i].y - lists.ranges[i].x;
-    if (tiles.x == 0) {
-        tiles = (plan.grid.size + side - 1) / side;
-        counts.assign(static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y), static_cast<int>(scene.shapes.size()));
-    }
-    return draw_tiles(seen, counts, tiles, border, side);
-}
-
 // The frame, in the order in which it happens.
 RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_exact) {
     const Clock::time_point start = Clock::now();
@@ -288,8 +256,8 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     if (!plan.closed_tiles.empty())
         record.pass("closed", {glsl::kExactTile * glsl::kExactTile, static_cast<int>(plan.closed_tiles.size())}, [&] { return closed.run(plan, settings, field); });
 
-    if (scene.render.view != "final") {
-        record.host("view", plan.shown.size, [&] { result.picture = draw_view(plan, scene, field, lists); });
+    if (plan.look.at == LookAt::field) {
+        record.host("view", plan.shown.size, [&] { result.picture = draw_field(plan, scene, field, lists); });
         context.check_reset();
         settings.give(std::move(field.distance));
         settings.give(std::move(field.material));
@@ -307,6 +275,7 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         lost_rays.write(0, &none, sizeof(none));
         lost_rays.bind_storage(glsl::kLostRaysStorage);
     }
+    FrameLook look(plan);
     gl::Texture2D radiance;
     for (std::size_t level = plan.cascades.size(); level-- > 0;) {
         gl::Texture2D merged;
@@ -317,20 +286,33 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         });
         settings.give(std::move(radiance));
         radiance = std::move(merged);
+        look.see_cascade(plan, level, radiance);
+        if (look.seen_all()) break;
     }
     if (plan.reference.rays > 0)
         record.pass("reference", plan.lit.size,
                     [&] { return reference.run(plan, scene.sky, buffers, field, settings, radiance); });
     gl::Texture2D moment_x, moment_y;
     if (plan.exact.used) {
+        ExactPass::SeeCells see_cells;
+        if (plan.look.at == LookAt::skipped) see_cells = [&](const gl::Texture2D& cells, int row, int rows) { look.see_cells(cells, row, rows); };
         ExactPass::Light found;
         exact.run(plan, scene.sky, field, settings, delta,
-                  [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, found);
+                  [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, found, see_cells);
         radiance = std::move(found.mean);
         moment_x = std::move(found.moment_x);
         moment_y = std::move(found.moment_y);
     }
-    if (plan.hrc.active()) radiance = render_hrc(plan, field, record);
+    if (plan.hrc.active()) radiance = render_hrc(plan, field, look, record);
+    if (plan.look.at != LookAt::picture) {
+        record.host("view", plan.shown.size, [&] { result.picture = look.draw(plan); });
+        context.check_reset();
+        for (gl::Texture2D* texture : {&field.distance, &field.material, &radiance, &moment_x, &moment_y}) settings.give(std::move(*texture));
+        stats.passes = record.finish();
+        stats.gpu_bytes = plan.gpu_bytes + buffers.bytes() + surfaces.bytes();
+        stats.total_ms = ms_since(start);
+        return result;
+    }
     if (plan.resolve)
         record.pass("resolve", plan.lit.size, [&] {
             gl::Texture2D resolved;
@@ -423,6 +405,19 @@ Renderer::~Renderer() {
 const DeviceInfo& Renderer::device() const { return impl_->info; }
 
 RenderResult Renderer::render(const Scene& given, const StopCheck& stop) {
+    const Look look = look_of(given.render.view);
+    if (look.at == LookAt::contribution) {
+        RenderResult result = render(contribution(given), stop);
+        if (auto* picture = std::get_if<Image8>(&result.picture)) write_legend(*picture, {given.render.view + " alone"});
+        return result;
+    }
+    if (look.at == LookAt::error) {
+        RenderResult result = render(as_compared(given), stop);
+        const Clock::time_point start = Clock::now();
+        result.picture = draw_error(given, std::get<ImageF>(result.picture), result.stats.method, stop);
+        result.stats.total_ms += ms_since(start);
+        return result;
+    }
     Scene made;
     if (needs_lowering(given)) made = lowered(given);
     const Scene& scene = needs_lowering(given) ? made : given;

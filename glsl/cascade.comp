@@ -42,7 +42,7 @@ void main() {
         float s = params.offset_sin[m];
         vec2 d = vec2(centre.x * c - centre.y * s, centre.y * c + centre.x * s);
         int direction = 4 * group + m;
-        vec3 radiance;
+        vec3 radiance, through;
         vec4 above = vec4(0.0);
         if (params.is_last == 0) {
             // The mean over those of the four probes that are in free space.
@@ -51,11 +51,12 @@ void main() {
         }
         // Where none is, and after the last cascade, the ray goes on alone until it meets something.
         float end = above.a > 0.0 ? params.end : kNeverLeaves;
-        int fate = march(p, d, params.start, end, params.domain, params.border, budget, radiance);
-        if (fate == kRayLeft) radiance = sky_radiance(direction);
-        if (fate == kRayPassed) radiance = above.rgb / above.a;
+        int fate = march_through(p, d, params.start, end, params.domain, params.border, budget, radiance, through);
+        if (fate == kRayLeft) radiance += through * sky_radiance(direction);
+        if (fate == kRayPassed) radiance += through * (above.rgb / above.a);
         sum += radiance;
     }
+    if (kCountSteps != 0) sum = vec3(4.0 * float(kMarchBudget - budget));
     imageStore(cascade_image, texel, vec4(0.25 * sum, 1.0));
     report_lost_rays();
 }

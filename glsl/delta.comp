@@ -16,6 +16,7 @@ layout(binding = kDeltaRadianceImage, rgba32f) uniform image2D radiance_image;
 const int kFloor = 1;
 
 #include "lib/delta.glsl"
+#include "lib/media.glsl"
 #include "lib/floor.glsl"
 
 vec3 sent_up(FloorPlace place, Arrival arrival) {
@@ -44,7 +45,18 @@ void main() {
         uvec4 head = texelFetch(heads, list + light);
         Arrival arrival = arrival_at(light, p, params.least_distance);
         bool dark = head.x == kDeltaDark || all(equal(arrival.on_floor, vec3(0.0)));
-        if (!dark && !list_hides(head, p, arrival.way, arrival.end)) sum += kFloor != 0 ? sent_up(floor_place, arrival) : arrival.on_floor * 0.15915494309189535;
+        if (!dark && !list_hides(head, p, arrival.way, arrival.end)) {
+            vec3 light = kFloor != 0 ? sent_up(floor_place, arrival) : arrival.on_floor * 0.15915494309189535;
+            if (kSceneMedia != 0) {
+                float far = length(arrival.way);
+                vec3 gained, through;
+                int budget = kDeltaMediaBudget;
+                // The box of all media ends the way to what has no distance.
+                bool arrived = cross_media(p, arrival.way / max(far, 1e-20), 0.0, arrival.end > 1.0 ? kFar : far, budget, gained, through);
+                light *= arrived ? through : vec3(0.0);
+            }
+            sum += light;
+        }
     }
     vec4 radiance = params.adds != 0 ? imageLoad(radiance_image, place) : vec4(0.0, 0.0, 0.0, 1.0);
     imageStore(radiance_image, place, radiance + vec4(sum, 0.0));

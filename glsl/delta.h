@@ -30,6 +30,8 @@ const int kDeltaSpot = 1;
 const int kDeltaDirectional = 2;
 const int kDeltaRaised = 4;       // added to a kind: of the world above the canvas, where light falls with the square
 
+const int kDeltaMediaBudget = 4000;  // loop iterations in media, of one light
+
 const int kDeltaRadianceImage = 0;
 const int kDeltaNodeRow = 1024;  // kExactNodeRow
 // Places on an element that are asked: shadows have hard edges, and the mean over an element counts.

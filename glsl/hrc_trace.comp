@@ -22,8 +22,9 @@ void main() {
     vec2 d = params.along * float(params.stride) + params.across * float(params.climb * ray - params.stride);
     float size = length(d);
     int budget = kMarchBudget;
-    vec3 radiance;
-    int fate = march(p, d / size, 0.0, size, params.domain, params.border, budget, radiance);
+    vec3 radiance, through;
+    int fate = march_through(p, d / size, 0.0, size, params.domain, params.border, budget, radiance, through);
     imageStore(pieces_image, ivec2(row, slot), vec4(radiance, fate == kRayBlocked ? 0.0 : 1.0));
+    if (kSceneMedia != 0) imageStore(pieces_image, ivec2(row, slot + imageSize(pieces_image).y / 2), vec4(through, 1.0));
     report_lost_rays();
 }

@@ -23,9 +23,9 @@ void main() {
     for (int ray = 0; ray < kLoneRays; ++ray) {
         float angle = (float(ray) + 0.5) * (6.28318530717958648 / float(kLoneRays));
         vec2 d = vec2(cos(angle), sin(angle));
-        vec3 radiance;
-        int fate = march(p, d, 0.0, kNeverLeaves, params.domain, params.border, budget, radiance);
-        sum += fate == kRayBlocked ? radiance : params.sky.rgb;
+        vec3 radiance, through;
+        march_through(p, d, 0.0, kNeverLeaves, params.domain, params.border, budget, radiance, through);
+        sum += radiance + through * params.sky.rgb;
     }
     imageStore(radiance_image, texel, vec4(sum / float(kLoneRays), 1.0));
     report_lost_rays();

@@ -62,6 +62,7 @@ void main() {
     vec2 margin = min(start - params.domain.xy, params.domain.zw - start);
     bool open = !alone && min(margin.x, margin.y) > params.longest &&
                 texelFetch(distance_texture, clamp(ivec2(floor(start)) + params.border, ivec2(0), textureSize(distance_texture, 0) - 1), 0).r > params.longest + kHalfDiagonal;
+    if (kSceneMedia != 0) open = open && !may_cross_media(start - params.longest, vec2(2.0 * params.longest));
     vec3 sum = vec3(0.0);
     vec2 upper_probe = index + 0.5;
     for (int m = open ? 0 : 4; m < 4; ++m) {
@@ -81,13 +82,14 @@ void main() {
             float far = length(way);
             if (alone) far = kNeverLeaves;
             else d = way / far;
-            vec3 radiance;
-            int fate = march(start, d, 0.0, far, params.domain, params.border, budget, radiance);
-            if (fate == kRayLeft) radiance = sky_radiance(direction);
-            if (fate == kRayPassed) radiance = texelFetch(upper_texture, upper_corner(direction) + ivec2(xs[j], ys[j]), 0).rgb;
+            vec3 radiance, through;
+            int fate = march_through(start, d, 0.0, far, params.domain, params.border, budget, radiance, through);
+            if (fate == kRayLeft) radiance += through * sky_radiance(direction);
+            if (fate == kRayPassed) radiance += through * texelFetch(upper_texture, upper_corner(direction) + ivec2(xs[j], ys[j]), 0).rgb;
             sum += weight * radiance;
         }
     }
+    if (kCountSteps != 0) sum = vec3(4.0 * float(kMarchBudget - budget));
     imageStore(cascade_image, texel, vec4(0.25 * sum, 1.0));
     report_lost_rays();
 }

@@ -32,12 +32,12 @@ void main() {
         float c = params.offset_cos[m];
         float s = params.offset_sin[m];
         vec2 d = vec2(centre.x * c - centre.y * s, centre.y * c + centre.x * s);
-        vec3 radiance;
-        float passes;
+        vec3 radiance, passes;
         march_cone(p + centre * params.start, d, max(sector * params.start, 0.05), sector, params.domain, params.border, budget, radiance, passes);
         vec3 sky = params.sky_first < 0 ? params.sky.rgb : texelFetch(sky_sectors, params.sky_first + 4 * group + m).rgb;
         sum += radiance + passes * sky;
     }
+    if (kCountSteps != 0) sum = vec3(4.0 * float(kMarchBudget - budget));
     imageStore(cascade_image, texel, vec4(0.25 * sum, 1.0));
     report_lost_rays();
 }

@@ -5,6 +5,7 @@
 #include "lib/domain.glsl"
 #include "lib/intersect.glsl"
 #include "lib/surface_light.glsl"
+#include "lib/media.glsl"
 
 layout(local_size_x = kReferenceGroupX, local_size_y = kReferenceGroupY) in;
 layout(std140, binding = kReferenceParamsBinding) uniform Params { ReferenceParams params; };
@@ -25,13 +26,22 @@ vec3 ray_radiance(vec2 p, int ray, uint seed) {
     vec2 d = vec2(cos(angle), sin(angle));
     float t;
     int hit = first_hit(p, d, params.shape_count, t);
-    if (hit >= 0 && t <= exit_distance(p, d, params.domain)) {
+    float leaves = exit_distance(p, d, params.domain);
+    int budget = kReferenceBudget;
+    vec3 light;
+    if (hit >= 0 && t <= leaves) {
         // A bitmap's colour is asked just inside the texel that was met.
-        vec3 light = shape_emission(hit, p + d * (t + 1e-3));
-        int budget = 0;  // the plan counts what a ray may cost
-        return kSceneSurfaces != 0 ? surface_light(p + d * t, d, params.border, light, budget) : light;
+        light = shape_emission(hit, p + d * (t + 1e-3));
+        if (kSceneSurfaces != 0) light = surface_light(p + d * t, d, params.border, light, budget);
+    } else {
+        light = params.sky_first < 0 ? params.sky.rgb : texelFetch(sky_sectors, params.sky_first + ray).rgb;
     }
-    return params.sky_first < 0 ? params.sky.rgb : texelFetch(sky_sectors, params.sky_first + ray).rgb;
+    if (kSceneMedia != 0) {
+        vec3 gained, through;
+        bool arrived = cross_media(p, d, 0.0, min(t, leaves), budget, gained, through);
+        light = gained + (arrived ? through : vec3(0.0)) * light;
+    }
+    return light;
 }
 
 void main() {

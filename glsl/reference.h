@@ -11,6 +11,9 @@ const int kReferenceParamsBinding = 0;
 const int kReferenceImageBinding = 0;   // rgba32f, the sum so far
 const int kReferenceDistanceUnit = 4;   // r32f
 
+// Loop iterations at the end of a ray and in media at most: as many as the plan counts (core/plan/plan.cpp).
+const int kReferenceBudget = 10000;
+
 struct ReferenceParams {
     ivec2 origin;     // first pixel of this slice
     ivec2 extent;     // pixels whose light is asked for

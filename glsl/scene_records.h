@@ -32,6 +32,11 @@ const int kShapeTexels = 4;
 // Newton steps of the distance to an ellipse; the plan counts them where loops are bounded.
 const int kEllipseIterations = 12;
 
+// Translucent shapes have records as others, behind all of them; their texel 1 holds the extinction per px. More of them:
+//   0: first record, how many, iterations of asking each once, unused    1: a box around all of them, cut off at the domain
+//   then two texels each: emission rgb per px, unused | the box that it lies in
+const int kMediaUnit = 14;  // RGBA32F
+
 // Texture units of the scene's buffer textures, the same in every pass.
 const int kShapeRecordsUnit = 0;
 const int kEdgesUnit = 1;         // RGBA32F: x0 y0 x1 y1 of an edge

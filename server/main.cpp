@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
         add_reference_command,
         add_compare_command,
         add_bench_command,
+        add_sign_url_command,
         add_worker_command,
         add_submit_command,
         add_worker_process_command,

@@ -127,9 +127,14 @@ PassWork DeltaPass::on_floor(const Plan& plan, const DistanceField& field, const
 PassWork DeltaPass::run(const Plan& plan, const DistanceField& field, const PassSettings& settings, gl::Texture2D& out, bool on_floor) {
     PassWork work;
     work.bytes = out.bytes();
-    gl::ComputeProgram& program = pixels_.of({{"kFloor", on_floor ? 1 : 0}, {"kGloss", on_floor && plan.floor.gloss ? 1 : 0}});
+    gl::ShaderConstants constants = {{"kFloor", on_floor ? 1 : 0}, {"kGloss", on_floor && plan.floor.gloss ? 1 : 0}};
+    if (plan.needs.media) {
+        for (const auto& one : march_constants(plan.needs)) constants.push_back(one);
+    }
+    gl::ComputeProgram& program = pixels_.of(constants);
     const std::size_t of_row = static_cast<std::size_t>(divided_up(plan.lit.size.x, glsl::kDeltaTile)) * static_cast<std::size_t>(plan.delta.size());
     const int rows = kCoarseTile * static_cast<int>(std::clamp<std::size_t>(kMostLists / (4 * of_row), 1, 1 << 12));
+    const int samples = plan.needs.media ? glsl::kDeltaMediaBudget / 8 : 1;
     for (int row = 0; row < plan.lit.size.y; row += rows) {
         Lists lists;
         const glm::ivec2 area{plan.lit.size.x, std::min(rows, plan.lit.size.y - row)};
@@ -139,7 +144,7 @@ PassWork DeltaPass::run(const Plan& plan, const DistanceField& field, const Pass
         lists.params.adds = on_floor ? 1 : 0;
         out.bind_image(glsl::kDeltaRadianceImage, GL_READ_WRITE);
         field.distance.bind_texture(glsl::kDeltaDistanceUnit);
-        work.dispatches += in_slices(lists, 1, lists.params, [&](const glsl::DeltaParams& p) {
+        work.dispatches += in_slices(lists, samples, lists.params, [&](const glsl::DeltaParams& p) {
             return program.dispatch(p, p.extent, settings.pixels / static_cast<std::size_t>(1 + (p.end_light - p.first_light) / 4));
         });
     }

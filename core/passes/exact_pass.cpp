@@ -229,7 +229,7 @@ ExactPass::Band ExactPass::prepare(const Plan& plan, const Sky& sky) const {
 }
 
 void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings,
-                    DeltaPass& delta, const Record& record, Light& out) {
+                    DeltaPass& delta, const Record& record, Light& out, const SeeCells& see_cells) {
     const ExactPlan& exact = plan.exact;
     Band band = prepare(plan, sky);
     glsl::ExactParams& params = band.params;
@@ -335,6 +335,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             work.points = std::accumulate(counted.begin() + glsl::kExactCountTiles, counted.end(), std::size_t(0));
             return work;
         });
+        if (see_cells) see_cells(band.leaf, row, band.area.y);
         if (counted[glsl::kExactCountSpent] != 0)
             throw TooDense("The scene is too dense for the method 'exact' on this device: at " +
                            std::to_string(counted[glsl::kExactCountSpent]) + " points its loops ran out of iterations.");

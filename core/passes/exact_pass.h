@@ -38,9 +38,11 @@ public:
     struct Light {
         gl::Texture2D mean, moment_x, moment_y;
     };
+    // Once a band is filled: the texture of cells (glsl/exact.h), the band's first row and how many.
+    using SeeCells = std::function<void(const gl::Texture2D& cells, int first_row, int rows)>;
     // `delta` lights surfaces where light bounces.
     void run(const Plan& plan, const Sky& sky, const DistanceField& field, const PassSettings& settings, DeltaPass& delta,
-             const Record& record, Light& out);
+             const Record& record, Light& out, const SeeCells& see_cells = {});
 
     // What surfaces shine with after all bounces: by element, as glsl/exact.h lays them out. For methods that sample.
     std::vector<glm::vec4> surfaces(const Plan& plan, const Sky& sky, const PassSettings& settings, DeltaPass& delta, const Record& record);

@@ -41,12 +41,14 @@ inline gl::ShaderConstants scene_constants(const ProgramNeeds& needs) {
             {"kSceneGradients", needs.gradients ? 1 : 0}};
 }
 
-// For programs that meet surfaces as well (glsl/lib/surface_light.glsl).
-inline gl::ShaderConstants surface_constants(const ProgramNeeds& needs, gl::ShaderConstants constants = {}) {
+// For programs that meet surfaces and media as well (glsl/lib/surface_light.glsl, media.glsl).
+inline gl::ShaderConstants light_constants(const ProgramNeeds& needs, gl::ShaderConstants constants = {}) {
     if (needs.surfaces) constants.emplace_back("kSceneSurfaces", 1);
+    if (needs.steps) constants.emplace_back("kCountSteps", 1);
+    if (needs.media) constants.emplace_back("kSceneMedia", 1);
     return constants;
 }
-inline gl::ShaderConstants march_constants(const ProgramNeeds& needs) { return surface_constants(needs, scene_constants(needs)); }
+inline gl::ShaderConstants march_constants(const ProgramNeeds& needs) { return light_constants(needs, scene_constants(needs)); }
 
 // What a pass reports of its run.
 struct PassWork {

@@ -60,7 +60,7 @@ PassWork HrcPass::pieces(const Plan& plan, const HrcQuadrant& q, const DistanceF
     const HrcLevel& level = level_of(q, n);
     const bool low = n < plan.hrc.settings.traced_levels;
     // Taken before anything is bound: making a texture binds it.
-    gl::Texture2D out = settings.take(format(plan), {q.rows, level.planes * level.rays});
+    gl::Texture2D out = settings.take(format(plan), {q.rows, plan.hrc.halves() * level.planes * level.rays});
     gl::Texture2D list;
     gl::Texture2D count;
     if (low) {

@@ -36,8 +36,10 @@ private:
     // Programs that read images have the images' format in them.
     struct ByFormat {
         ByFormat(const std::string& name, const std::string& shader_dir);
-        gl::ComputeProgram& of(const Plan& plan) { return plan.half_floats ? half : full; }
-        gl::ComputeProgram full, half;
+        gl::ComputeProgram& of(const Plan& plan) {
+            return (plan.half_floats ? half : full).of(plan.hrc.coloured ? gl::ShaderConstants{{"kHrcMedia", 1}} : gl::ShaderConstants{});
+        }
+        gl::ProgramForms full, half;
     };
 
     ByFormat low_;

@@ -32,7 +32,7 @@ PassWork ReferencePass::run(const Plan& plan, const Sky& sky, const SceneBuffers
         params.end_ray = std::min(ray + plan.reference.rays_per_dispatch, plan.reference.rays);
         params.is_last = params.end_ray == plan.reference.rays ? 1 : 0;
         const std::size_t cost = static_cast<std::size_t>(params.end_ray - ray) * plan.reference.tests_per_ray;
-        work.dispatches += program_.of(surface_constants(plan.needs)).dispatch(params, plan.lit.size, settings.distance_iterations / std::max<std::size_t>(cost, 1));
+        work.dispatches += program_.of(light_constants(plan.needs)).dispatch(params, plan.lit.size, settings.distance_iterations / std::max<std::size_t>(cost, 1));
     }
     work.rays = static_cast<std::size_t>(plan.reference.rays) * static_cast<std::size_t>(plan.lit.size.x) *
                 static_cast<std::size_t>(plan.lit.size.y);

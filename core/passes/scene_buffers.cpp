@@ -42,7 +42,8 @@ std::vector<glm::vec4> sky_table(const Sky& sky, const Plan& plan) {
 SceneBuffers::SceneBuffers(const PackedScene& scene, const Sky& sky, const Plan& plan)
     : shapes_(GL_RGBA32F, scene.shapes.data(), scene.shapes.size() * sizeof(glm::vec4)),
       edges_(GL_RGBA32F, scene.edges.data(), scene.edges.size() * sizeof(glm::vec4)),
-      texels_(GL_RGBA8, scene.texels.data(), scene.texels.size() * sizeof(std::uint32_t)) {
+      texels_(GL_RGBA8, scene.texels.data(), scene.texels.size() * sizeof(std::uint32_t)),
+      media_(GL_RGBA32F, scene.media.data(), scene.media.size() * sizeof(glm::vec4)) {
     const std::vector<glm::vec4> table = sky_table(sky, plan);
     has_sky_table_ = !table.empty();
     sky_ = gl::BufferTexture(GL_RGBA32F, table.data(), table.size() * sizeof(glm::vec4));
@@ -53,8 +54,9 @@ void SceneBuffers::bind() const {
     edges_.bind_texture(glsl::kEdgesUnit);
     texels_.bind_texture(glsl::kBitmapTexelsUnit);
     sky_.bind_texture(glsl::kSkySectorsUnit);
+    if (media_.bytes() > 0) media_.bind_texture(glsl::kMediaUnit);
 }
 
-std::size_t SceneBuffers::bytes() const { return shapes_.bytes() + edges_.bytes() + texels_.bytes() + sky_.bytes(); }
+std::size_t SceneBuffers::bytes() const { return shapes_.bytes() + edges_.bytes() + texels_.bytes() + media_.bytes() + sky_.bytes(); }
 
 }  // namespace penumbra

@@ -20,6 +20,7 @@ private:
     gl::BufferTexture shapes_;
     gl::BufferTexture edges_;
     gl::BufferTexture texels_;
+    gl::BufferTexture media_;
     gl::BufferTexture sky_;  // one sector per direction of each cascade; only for gradients
     bool has_sky_table_ = false;
 };

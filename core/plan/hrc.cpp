@@ -89,7 +89,7 @@ std::size_t hrc_bytes(const HrcPlan& plan, std::size_t texel) {
         std::size_t fluences = 0;
         const auto rows = static_cast<std::size_t>(q.rows);
         for (const HrcLevel& level : q.levels) {
-            pieces += level.pieces(q.rows);
+            pieces += static_cast<std::size_t>(plan.halves()) * level.pieces(q.rows);
             fluences = std::max(fluences, rows * static_cast<std::size_t>(level.planes) * static_cast<std::size_t>(level.cones));
         }
         most = std::max(most, texel * (pieces + 2 * fluences) + 4 * q.levels.front().pieces(q.rows));

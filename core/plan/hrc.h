@@ -49,6 +49,8 @@ struct HrcPlan {
     glm::ivec2 points{0};       // lattice points in the view
     glm::dvec2 first_point{0};  // px; the lattice is centred on the view
     std::vector<HrcQuadrant> quadrants;  // right, down, left, up; empty: not this method
+    bool coloured = false;  // ray pieces let each channel through by itself
+    int halves() const { return coloured ? 2 : 1; }  // of a texture of ray pieces: what they meet, then what they let through
     bool active() const { return !quadrants.empty(); }
     bool aligned() const { return settings.cell_px == 1.0; }  // each pixel's centre is a lattice point
 };

@@ -56,6 +56,8 @@ class Packer {
 public:
     Packer(const Scene& scene, double radiance_scale) : frame_(scene.canvas), scale_(1.0 / radiance_scale) {
         for (const Shape& shape : scene.shapes) std::visit([&](const auto& g) { add(shape, g); }, shape.geometry);
+        packed_.opaque = scene.shapes.size();
+        if (!scene.media.empty()) add_media(scene);
     }
 
     PackedScene take() { return std::move(packed_); }
@@ -178,6 +180,49 @@ private:
                join(frame_.point(g.position), g.size * frame_.pixels_per_unit),
                {float(first), float(image.width), float(image.height), float(threshold)});
         packed_.shapes[packed_.shapes.size() - 3].w = float(g.as_albedo ? 0.0 : g.emission_scale * scale_);
+    }
+
+    // The box in pixels that a shape lies in.
+    static vec4 box_of(const Shape& shape, const vec4& a, const vec4& b) {
+        dvec2 middle(a.x, a.y), half(0);
+        if (std::holds_alternative<Circle>(shape.geometry)) {
+            half = dvec2(double(a.z));
+        } else if (std::holds_alternative<Ellipse>(shape.geometry)) {
+            half = {std::hypot(a.z * b.x, a.w * b.y), std::hypot(a.z * b.y, a.w * b.x)};
+        } else if (std::holds_alternative<Rect>(shape.geometry)) {
+            half = {std::abs(a.z * b.x) + std::abs(a.w * b.y), std::abs(a.z * b.y) + std::abs(a.w * b.x)};
+        } else {
+            // From end to end, or a box already; a stroke's half width more.
+            middle = 0.5 * dvec2(a.x + a.z, a.y + a.w);
+            half = 0.5 * glm::abs(dvec2(a.z - a.x, a.w - a.y)) + double(b.z);
+        }
+        return join(middle - half - 1e-3, middle + half + 1e-3);
+    }
+
+    void add_media(const Scene& scene) {
+        const std::size_t first = packed_.shapes.size() / glsl::kShapeTexels;
+        packed_.media.resize(2);
+        vec4 all(1e30f, 1e30f, -1e30f, -1e30f);
+        std::size_t edges = 0;
+        for (const Shape& shape : scene.media) {
+            Shape filled = shape;
+            const double length = 1.0 / frame_.pixels_per_unit;  // world units in a pixel
+            filled.emission = shape.medium->extinction * length / scale_;
+            std::visit([&](const auto& g) { add(filled, g); }, shape.geometry);
+            const vec4* record = &packed_.shapes[packed_.shapes.size() - glsl::kShapeTexels];
+            edges += std::max<std::size_t>(static_cast<std::size_t>(record[0].w), 1);
+            const vec4 box = box_of(shape, record[2], record[3]);
+            all = {std::min(all.x, box.x), std::min(all.y, box.y), std::max(all.z, box.z), std::max(all.w, box.w)};
+            const Colour e = shape.medium->emission * length * scale_;
+            packed_.media.push_back({float(e.r), float(e.g), float(e.b), 0});
+            packed_.media.push_back(box);
+        }
+        // What lies outside the domain does nothing.
+        const GridPlan grid = plan_grid(scene.canvas);
+        all = {std::max(all.x, float(grid.domain.x0)), std::max(all.y, float(grid.domain.y0)), std::min(all.z, float(grid.domain.x1)),
+               std::min(all.w, float(grid.domain.y1))};
+        packed_.media[0] = {float(first), float(scene.media.size()), float(edges + scene.media.size()), 0};
+        packed_.media[1] = all;
     }
 
     struct Box {

@@ -17,7 +17,9 @@ struct PackedScene {
     std::vector<glm::vec4> shapes;        // kShapeTexels per shape
     std::vector<glm::vec4> edges;         // x0 y0 x1 y1
     std::vector<std::uint32_t> texels;    // RGBA8 of all bitmaps
-    std::size_t bytes() const { return 16 * (shapes.size() + edges.size()) + 4 * texels.size(); }
+    std::vector<glm::vec4> media;         // translucent shapes, whose records come last: glsl/scene_records.h
+    std::size_t opaque = 0;               // shapes before the translucent ones
+    std::size_t bytes() const { return 16 * (shapes.size() + edges.size() + media.size()) + 4 * texels.size(); }
 };
 
 // World to view pixels.

@@ -48,6 +48,13 @@ std::size_t tests_per_ray(const std::vector<Shape>& shapes) {
     return std::max<std::size_t>(tests, 1);
 }
 
+// Of a ray on its way through media, as far as a dispatch is planned: a ray that meets more of them than this goes on.
+std::size_t media_tests(const std::vector<Shape>& media) {
+    std::size_t edges = 0;
+    for (const Shape& shape : media) edges += 1 + std::max<std::size_t>(edge_count(shape), 1);
+    return edges * std::min<std::size_t>(2 * edges, 16);
+}
+
 // `more`: tests at the end of a ray.
 ReferencePlan plan_reference(const Scene& scene, const DeviceLimits& limits, std::size_t more) {
     ReferencePlan plan;
@@ -78,6 +85,13 @@ double brightest_emission(const Shape& shape) {
     return peak;
 }
 
+// What a thick medium shines with.
+double brightest_glow(const Medium& medium) {
+    double most = 0;
+    for (int c = 0; c < 3; ++c) most = std::max(most, medium.extinction[c] > 0 ? std::min(medium.emission[c] / medium.extinction[c], medium.emission[c] * 1e4) : medium.emission[c] * 1e4);
+    return most;
+}
+
 std::vector<ShapeSlice> slice_shapes(const std::vector<Shape>& shapes) {
     std::vector<ShapeSlice> slices;
     std::size_t spent = 0;
@@ -106,12 +120,18 @@ void check_size(glm::ivec2 size, std::size_t texel_bytes, const DeviceLimits& li
                       std::to_string(size.x) + " x " + std::to_string(size.y) + ".");
 }
 
+HrcPlan hrc_of(const Scene& scene, glm::ivec2 canvas) {
+    HrcPlan hrc = plan_hrc(canvas, scene.canvas.margin / scene.canvas.pixel_size(), hrc_settings(scene.render.quality));
+    hrc.coloured = !scene.media.empty();
+    return hrc;
+}
+
 // hrc: half floats where full ones would take more than the cascades of rc may; refused where those are too many as well.
 bool hrc_fits(const Scene& scene, glm::ivec2 canvas, const DeviceLimits& limits) {
-    const HrcPlan hrc = plan_hrc(canvas, scene.canvas.margin / scene.canvas.pixel_size(), hrc_settings(scene.render.quality));
+    const HrcPlan hrc = hrc_of(scene, canvas);
     for (const HrcQuadrant& q : hrc.quadrants)
         for (const HrcLevel& level : q.levels)
-            if (std::max(q.rows, level.planes * level.rays) > limits.max_texture_side) return false;
+            if (std::max(q.rows, hrc.halves() * level.planes * level.rays) > limits.max_texture_side) return false;
     return hrc_bytes(hrc, 8) <= (limits.software ? kMostHrcBytes : kMostHrcBytesOnGpu);
 }
 
@@ -120,7 +140,7 @@ void fit_hrc(Plan& plan, double peak, const DeviceLimits& limits) {
     if (plan.half_floats) plan.radiance_scale = peak > 0 ? peak : 1.0;
     const std::size_t texel = plan.half_floats ? 8 : 16;
     for (const HrcQuadrant& q : plan.hrc.quadrants)
-        for (const HrcLevel& level : q.levels) check_size({q.rows, level.planes * level.rays}, texel, limits, "lattice");
+        for (const HrcLevel& level : q.levels) check_size({q.rows, plan.hrc.halves() * level.planes * level.rays}, texel, limits, "lattice");
     const std::size_t bytes = hrc_bytes(plan.hrc, texel);
     if (bytes > (limits.software ? kMostHrcBytes : kMostHrcBytesOnGpu))
         throw DeviceError("The picture is too large for the method 'hrc' on this device: it needs " + std::to_string(bytes >> 20) +
@@ -300,7 +320,18 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         return plan;
     }
     PackedOutline outline;
-    if (plan.method == "auto") {
+    plan.needs.media = !scene.media.empty();
+    plan.look = look_of(scene.render.view);
+    plan.needs.steps = plan.look.at == LookAt::steps;
+    const bool looks_inside = plan.look.at == LookAt::cascade || plan.look.at == LookAt::probes || plan.needs.steps;
+    if (plan.method == "auto" && (looks_inside || plan.look.at == LookAt::skipped)) {
+        plan.method = looks_inside || plan.needs.media ? "rc" : "exact";
+        plan.method_reason = "what the view looks at";
+    }
+    if (plan.method == "auto" && plan.needs.media) {
+        plan.method = hrc_fits(scene, plan.canvas, limits) ? "hrc" : "rc";
+        plan.method_reason = plan.method == "hrc" ? "rays are weakened on their way through media" : "media, and too large a picture for hrc on this device";
+    } else if (plan.method == "auto") {
         outline = pack_outline(scene, 1.0, true, most_surveyed_pieces(), reflecting);
         if (plan.floor.relief && !(outline.fits && not_exact.empty()))
             throw DeviceError("The scene is too dense for a floor with relief, which only the method 'exact' has: " +
@@ -333,9 +364,12 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         has_bitmaps = has_bitmaps || std::holds_alternative<Bitmap>(shape.geometry);
     }
 
+    for (const Shape& shape : scene.media) peak = std::max(peak, brightest_glow(*shape.medium));
     if (skip(Saving::programs)) {
-        plan.needs = {false, false, false, false, false};
-        for (const Shape& shape : scene.shapes) {
+        plan.needs.general = plan.needs.ellipses = plan.needs.outlines = plan.needs.bitmaps = plan.needs.gradients = false;
+        std::vector<Shape> all = scene.shapes;
+        for (const Shape& shape : scene.media) all.push_back(shape);
+        for (const Shape& shape : all) {
             const Geometry& g = shape.geometry;
             plan.needs.gradients = plan.needs.gradients || !shape.gradient.empty();
             plan.needs.ellipses = plan.needs.ellipses || std::holds_alternative<Ellipse>(g);
@@ -366,11 +400,11 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
 
     const CascadeSettings settings = plan.bilinear_fix ? rc_fix_settings(scene.render.quality) : cascade_settings(scene.render.quality);
     if (brute_force)
-        plan.reference = plan_reference(scene, limits, reflecting ? static_cast<std::size_t>(glsl::kMostSurfaceChords) : 0);
+        plan.reference = plan_reference(scene, limits, (reflecting ? static_cast<std::size_t>(glsl::kMostSurfaceChords) : 0) + media_tests(scene.media));
     else if (exact)
         plan.exact = plan_exact(scene, std::move(outline), plan.canvas, limits.software);
     else if (holographic)
-        plan.hrc = plan_hrc(plan.canvas, scene.canvas.margin / scene.canvas.pixel_size(), hrc_settings(scene.render.quality));
+        plan.hrc = hrc_of(scene, plan.canvas);
     else
         plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
     if (reflecting && !exact) {
@@ -406,7 +440,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         plan.hrc = {};
     }
     // The beams of rc_fix's last cascade differ from the rays of those below it, so that another may not take its place.
-    if (!plan.cascades.empty() && !plan.bilinear_fix && skip(Saving::levels)) {
+    if (!plan.cascades.empty() && !plan.bilinear_fix && !plan.needs.media && !looks_inside && skip(Saving::levels)) {
         const bool dark_sky = brightest(scene.sky) <= 0;
         const double levels = static_cast<double>(leave_out_far(plan.cascades, extent_of_shapes(scene, dark_sky, reflecting), plan.grid.diagonal_px));
         if (levels > 0) leave_out("cascades", dark_sky ? "no light is as far away" : "no shape is as far away", 4.0 * pixels * levels / (settings.spacing_px * settings.spacing_px));

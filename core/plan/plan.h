@@ -14,6 +14,7 @@
 #include "core/plan/delta.h"
 #include "core/plan/exact_plan.h"
 #include "core/plan/hrc.h"
+#include "core/plan/look.h"
 #include "core/plan/skip.h"
 #include "core/render_stats.h"
 #include "core/scene/scene.h"
@@ -84,6 +85,8 @@ struct ProgramNeeds {
     bool bitmaps = true;
     bool gradients = true;  // of emission, along strokes
     bool surfaces = false;  // that shine with light that bounced, as sampled rays meet them
+    bool media = false;     // translucent shapes
+    bool steps = false;     // a view counts them
 };
 
 // A floor that is more than an albedo.
@@ -96,6 +99,7 @@ struct FloorPlan {
 struct Plan {
     std::string method;
     std::string method_reason;
+    Look look;                          // of a debug view
     glm::ivec2 canvas{0};
     PixelArea shown;                    // the part of the canvas that becomes the picture
     PixelArea lit;                      // the pixels whose light is worked out: those shown and what their edges mix with

@@ -35,7 +35,7 @@ public:
     bool run() {
         int side = 1;
         while (side < std::max(lists_.tiles.x, lists_.tiles.y)) side *= 2;
-        std::vector<int> all(scene_.shapes.size() / glsl::kShapeTexels);
+        std::vector<int> all(scene_.opaque);
         for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
         visit({0, 0}, side, all);
         return lists_.shapes.size() <= kMostEntries;
@@ -133,7 +133,7 @@ ShapeLists list_shapes(const PackedScene& scene, const GridPlan& grid, int first
 }
 
 SkippedWork saved_by_lists(const ShapeLists& lists, const PackedScene& scene, const GridPlan& grid) {
-    const double shapes = double(scene.shapes.size() / glsl::kShapeTexels);
+    const double shapes = double(scene.opaque);
     const double pixels = double(grid.size.x) * grid.size.y;
     constexpr int side = glsl::kDistanceTile;
     const std::string square = std::to_string(side) + " x " + std::to_string(side);

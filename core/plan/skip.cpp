@@ -282,6 +282,7 @@ std::optional<Scene> without_unseen_shapes(const Scene& scene, std::vector<Skipp
     lean.lights = scene.lights;
     lean.render = scene.render;
     lean.output = scene.output;
+    lean.media = scene.media;
     for (std::size_t i = 0; i < count; ++i)
         if (gone[i] == 0) lean.shapes.push_back(scene.shapes[i]);
     const auto leave_out = [&](std::size_t shapes, const char* why) {
@@ -307,7 +308,7 @@ bool shines(const Shape& shape) {
 }
 
 std::optional<ConstantLight> constant_light(const Scene& scene) {
-    if (!saves(scene.render, Saving::constant) || !scene.canvas.floor.is_plain()) return std::nullopt;
+    if (!saves(scene.render, Saving::constant) || !scene.canvas.floor.is_plain() || !scene.media.empty()) return std::nullopt;
     const auto bright = [](const Light& light) {
         return std::visit(
             [](const auto& l) {

@@ -28,9 +28,10 @@ double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
 
 }  // namespace
 
-DeltaLights::DeltaLights(const Scene& scene, const Boundary& boundary)
+DeltaLights::DeltaLights(const Scene& scene, const Boundary& boundary, const Media& media)
     : lights_(scene.lights),
       boundary_(boundary),
+      media_(media),
       least_distance_(0.5 * scene.canvas.pixel_size()) {}
 
 DeltaLights::Arrival DeltaLights::arrival(const Light& light, Point p) const {
@@ -101,7 +102,7 @@ Colour DeltaLights::mean_radiance(Point p, Point forward, const std::vector<Inte
     for (const Light& light : lights_) {
         const Arrival way = arrival(light, p);
         if (way.on_floor == Colour(0) || !is_visible(way, p, forward, seen)) continue;
-        sum += way.on_floor;
+        sum += media_.along(p, way.direction, way.distance).transmittance * way.on_floor;
     }
     return sum;
 }
@@ -112,12 +113,13 @@ Colour DeltaLights::on_floor(const Floor& floor, const FloorPlace& place, Point 
     for (const Light& light : lights_) {
         const Arrival way = arrival(light, p);
         if (way.on_floor == Colour(0) || !is_visible(way, p, forward, seen)) continue;
+        const Colour through = media_.along(p, way.direction, way.distance).transmittance;
         if (way.up > 0) {
             const double level = std::sqrt(std::max(1 - way.up * way.up, 0.0));
-            sum += floor.lit_by_beam(place, {way.direction * level, way.up}, way.across);
+            sum += through * floor.lit_by_beam(place, {way.direction * level, way.up}, way.across);
         } else {
             const Point d = way.at_light ? Point(0) : way.direction;
-            sum += floor.lit_by(place, {way.on_floor, way.on_floor * d.x, way.on_floor * d.y});
+            sum += through * floor.lit_by(place, {way.on_floor, way.on_floor * d.x, way.on_floor * d.y});
         }
     }
     return sum;

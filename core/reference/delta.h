@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/floor/floor.h"
+#include "core/reference/media.h"
 #include "core/reference/sweep.h"
 
 namespace penumbra::reference {
@@ -13,7 +14,7 @@ namespace penumbra::reference {
 class DeltaLights {
 public:
     // `pixel_size` in world units: distances count as at least half a pixel.
-    DeltaLights(const Scene& scene, const Boundary& boundary);
+    DeltaLights(const Scene& scene, const Boundary& boundary, const Media& media);
 
     bool empty() const { return lights_.empty(); }
     // What they add to the mean radiance at `p`, given all that `p` sees.
@@ -42,6 +43,7 @@ private:
 
     const std::vector<Light>& lights_;
     const Boundary& boundary_;
+    const Media& media_;
     double least_distance_;
 };
 

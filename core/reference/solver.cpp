@@ -15,6 +15,7 @@
 #include "core/floor/floor.h"
 #include "core/reference/boundary.h"
 #include "core/reference/delta.h"
+#include "core/reference/media.h"
 #include "core/reference/radiosity.h"
 #include "core/reference/sky.h"
 #include "core/reference/sweep.h"
@@ -95,7 +96,9 @@ struct ExactSolver::State {
     SolveOptions options;
     Boundary boundary;
     SkyIntegral sky;
+    Media media;
     DeltaLights lights;
+    Problems problems;
     std::optional<Floor> floor;  // of more than an albedo
     std::optional<Elements> elements;
     bool cancelled = false;
@@ -109,21 +112,27 @@ struct ExactSolver::State {
           options(with),
           boundary(scene, with.max_pieces, scene.render.bounces > 0),
           sky(scene.sky),
-          lights(scene, boundary),
+          media(scene, boundary),
+          lights(scene, boundary, media),
+          problems(boundary.problems()),
           shining(shining_pieces(boundary, false)),
           sweep(fresh_sweep()) {
+        if (!media.empty() && scene.canvas.floor.has_relief())
+            problems.push_back({"/canvas/floor", "not_supported_yet", "a floor with relief in a scene with translucent shapes is not supported yet"});
+        if (!media.empty() && scene.render.bounces > 0)
+            problems.push_back({"/render/bounces", "not_supported_yet", "light that bounces in a scene with translucent shapes is not supported yet"});
         if (!scene.canvas.floor.is_plain()) floor.emplace(scene.canvas);
         is_black =
             needs_only_shining() && std::find(shining.begin(), shining.end(), 1) == shining.end();
-        if (!boundary.problems().empty() || scene.render.bounces <= 0 || is_black) return;
+        if (!problems.empty() || scene.render.bounces <= 0 || is_black) return;
         shining = shining_pieces(boundary, true);
         elements.emplace(boundary, lights, options.element_length_px * scene.canvas.pixel_size());
         reflect_all();
     }
 
-    // The sky and delta lights ask what every direction meets; emitters only where they can be
+    // The sky, delta lights and media ask what every direction meets; emitters only where they can be
     // seen.
-    bool needs_only_shining() const { return sky.is_black() && lights.empty(); }
+    bool needs_only_shining() const { return sky.is_black() && lights.empty() && media.empty(); }
     Sweep fresh_sweep() const { return Sweep(boundary, needs_only_shining() ? &shining : nullptr); }
 
     void reflect_all() {
@@ -153,10 +162,14 @@ struct ExactSolver::State {
 
     static constexpr Point forward() { return {1, 0}; }
 
+    Colour fluence(Point p, const std::vector<Interval>& seen) const {
+        return media.empty() ? gather().fluence(p, seen) : media.fluence(p, seen, sky);
+    }
+
     Colour mean_radiance(Point p, Sweep& with) const {
         if (is_black) return Colour(0);
         const auto& seen = with.look(p, forward(), 0, false);
-        return gather().fluence(p, seen) / (2 * std::numbers::pi);
+        return fluence(p, seen) / (2 * std::numbers::pi);
     }
 
     // What a free pixel holds, and from how many intervals of direction.
@@ -165,14 +178,14 @@ struct ExactSolver::State {
         const auto& seen = with.look(p, forward(), 0, false);
         intervals = seen.size();
         if (floor) {
-            const Gather::Moments m = gather().moments(p, seen);
+            const Gather::Moments m = media.empty() ? gather().moments(p, seen) : Gather::Moments{fluence(p, seen), Colour(0), Colour(0)};
             const double turn = 2 * std::numbers::pi;
             const FloorPlace place = floor->at(p);
             Colour sum = floor->lit_by(place, {m.mean / turn, m.x / turn, m.y / turn});
             if (!lights.empty()) sum += lights.on_floor(*floor, place, p, forward(), seen);
             return sum;
         }
-        Colour sum = gather().fluence(p, seen) / (2 * std::numbers::pi);
+        Colour sum = fluence(p, seen) / (2 * std::numbers::pi);
         if (!lights.empty()) sum += lights.mean_radiance(p, forward(), seen);
         return scene.canvas.floor_albedo * sum;
     }
@@ -184,7 +197,7 @@ ExactSolver::~ExactSolver() = default;
 ExactSolver::ExactSolver(ExactSolver&&) noexcept = default;
 ExactSolver& ExactSolver::operator=(ExactSolver&&) noexcept = default;
 
-const Problems& ExactSolver::problems() const { return state_->boundary.problems(); }
+const Problems& ExactSolver::problems() const { return state_->problems; }
 bool ExactSolver::cancelled() const { return state_->cancelled; }
 bool ExactSolver::is_solid(Point p) const { return state_->boundary.is_solid(p); }
 Colour ExactSolver::mean_radiance(Point p) { return state_->mean_radiance(p, state_->sweep); }

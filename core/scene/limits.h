@@ -20,6 +20,8 @@ struct Limits {
     std::size_t max_points = 200000;
     std::size_t max_lights = 1000;
     std::size_t max_sky_stops = 256;
+    // Of translucent shapes, in all: a ray asks each of them. A polygon has as many as points, others one, a polyline as segments.
+    std::size_t max_medium_edges = 256;
     // Of a stroke with a gradient: rays that meet it look their place up, sixteen of them in one invocation at most.
     std::size_t max_emission_stops = 64;
     std::size_t max_gradient_points = 1024;

@@ -65,8 +65,13 @@ void fields(A& archive, Like<A, EmissionStop>& stop) {
 }
 template <class A>
 void fields(A& archive, Like<A, Shape>& shape) {
-    auto& [geometry, emission, albedo, gradient] = shape;
-    archive(geometry, emission, albedo, gradient);
+    auto& [geometry, emission, albedo, gradient, medium] = shape;
+    archive(geometry, emission, albedo, gradient, medium);
+}
+template <class A>
+void fields(A& archive, Like<A, Medium>& medium) {
+    auto& [extinction, emission] = medium;
+    archive(extinction, emission);
 }
 template <class A>
 void fields(A& archive, Like<A, PointLight>& light) {
@@ -169,8 +174,8 @@ void fields(A& archive, Like<A, OutputSettings>& output) {
 }
 template <class A>
 void fields(A& archive, Like<A, Scene>& scene) {
-    auto& [canvas, sky, shapes, lights, render, output] = scene;
-    archive(canvas, sky, shapes, lights, render, output);
+    auto& [canvas, sky, shapes, lights, render, output, media] = scene;
+    archive(canvas, sky, shapes, lights, render, output, media);
 }
 
 std::string normal_form(const Scene& scene) {

@@ -114,11 +114,18 @@ struct EmissionStop {
     Colour emission{0};
 };
 
+// What a translucent shape is filled with, per world unit of a ray's way through it (docs/methods/media.md).
+struct Medium {
+    Colour extinction{0};
+    Colour emission{0};
+};
+
 struct Shape {
     Geometry geometry;
     Colour emission{0};  // ignored for Bitmap
     Colour albedo{0};    // ignored for Bitmap
     std::vector<EmissionStop> gradient{};  // of Line and Polyline: emission along them, linear between stops, instead of `emission`
+    std::optional<Medium> medium{};  // then it is translucent, and free space
 };
 
 // What a light's strength is given in. `radiant` is flatland's own; the others are of the world above the canvas, where a light
@@ -258,6 +265,8 @@ struct Scene {
     std::vector<Light> lights;
     RenderSettings render;
     OutputSettings output;
+    // Translucent shapes, once lowered (core/scene/lower.h) has taken them out of `shapes`; the later is on top.
+    std::vector<Shape> media{};
 };
 
 }  // namespace penumbra

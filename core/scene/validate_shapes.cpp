@@ -264,6 +264,7 @@ void validate_shapes(RangeChecks& checks, const Path& where, const std::vector<S
                    "must hold at most " + number_text(limits.max_bitmap_texels) +
                        " texels in all bitmaps together, hold " + number_text(texels));
     }
+    std::size_t edges = 0;  // of translucent shapes
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const Path shape_path = where.index(i);
         std::visit(GeometryChecks(checks, shape_path, i), shapes[i].geometry);
@@ -271,6 +272,16 @@ void validate_shapes(RangeChecks& checks, const Path& where, const std::vector<S
             checks.colour(shape_path.key("emission"), shapes[i].emission, limits.max_radiance);
             validate_gradient(checks, shape_path.key("emission").key("gradient"), shapes[i]);
             checks.colour(shape_path.key("albedo"), shapes[i].albedo, 1);
+        }
+        if (const auto& medium = shapes[i].medium) {
+            const Path medium_path = shape_path.key("medium");
+            checks.colour(medium_path.key("extinction"), medium->extinction, limits.max_radiance);
+            checks.colour(medium_path.key("emission"), medium->emission, limits.max_radiance);
+            edges += std::max<std::size_t>(point_count(shapes[i].geometry), 1);
+            if (edges > limits.max_medium_edges && edges - std::max<std::size_t>(point_count(shapes[i].geometry), 1) <= limits.max_medium_edges)
+                checks.add(medium_path, "too_many",
+                           "must not be: all translucent shapes together may have at most " + std::to_string(limits.max_medium_edges) +
+                               " edges, and this one goes beyond");
         }
     }
 }

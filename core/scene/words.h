@@ -10,7 +10,8 @@
 namespace penumbra {
 
 std::span<const std::string_view> known_methods();
-std::span<const std::string_view> known_views();  // "cascade0" stands for cascade0 to cascade15
+// "cascade0" stands for cascade0 to cascade15, "light0" and "shape0" for all of their kind.
+std::span<const std::string_view> known_views();
 std::span<const std::string_view> known_formats();
 std::span<const std::string_view> known_tonemaps();
 std::span<const std::string_view> known_looks();
@@ -23,5 +24,7 @@ std::span<const int> bit_depths_of(std::string_view format);
 int bit_depth_of(std::string_view format, std::optional<int> asked);
 
 bool is_known_view(std::string_view word);
+// The number of a view of this kind ("cascade", "light", "shape"); none of another.
+std::optional<int> view_number(std::string_view view, std::string_view kind);
 
 }  // namespace penumbra

@@ -44,11 +44,24 @@ vec3 beam_light(int shape, int type, vec2 at, vec2 d, float t, float w, ivec2 bo
     return surface_light(enters < kFar ? start + enters * d : at, d, border, emission, budget);
 }
 
+// On along the beam's axis to t: what the media there give and take.
+void passes_media(vec2 p, vec2 d, float t, inout int budget, inout float crossed, inout vec3 radiance, inout vec3 passes) {
+    if (kSceneMedia == 0 || t <= crossed) return;
+    vec3 gained, through;
+    if (!cross_media(p, d, crossed, t, budget, gained, through)) {
+        ++lost_rays;
+        through = vec3(0.0);
+    }
+    radiance += passes * gained;
+    passes *= through;
+    crossed = t;
+}
+
 // Radiance met by a beam from p along d that is `width` wide at p and grows by `slope`; `passes` is the share of it that
 // leaves the domain.
-void march_cone(vec2 p, vec2 d, float width, float slope, vec4 domain, ivec2 border, inout int budget, out vec3 radiance, out float passes) {
+void march_cone(vec2 p, vec2 d, float width, float slope, vec4 domain, ivec2 border, inout int budget, out vec3 radiance, out vec3 passes) {
     radiance = vec3(0.0);
-    passes = 1.0;
+    passes = vec3(1.0);
     float stop = exit_distance(p, d, domain);
     float t = 0.0;
     ivec2 last_pixel = textureSize(distance_texture, 0) - 1;
@@ -57,8 +70,9 @@ void march_cone(vec2 p, vec2 d, float width, float slope, vec4 domain, ivec2 bor
     float share = 0.0;         // covered where it was least
     vec2 beside_at = p;        // the axis there
     float beside_t = 0.0;
+    float crossed = 0.0;       // media have been asked up to here
     bool approached = false;   // from here on: what is behind p is not met
-    while (passes > 0.001) {
+    while (max(passes.r, max(passes.g, passes.b)) > 0.001) {
         ivec2 pixel = ivec2(0);
         float room = 0.0;
         float w = width;
@@ -74,7 +88,7 @@ void march_cone(vec2 p, vec2 d, float width, float slope, vec4 domain, ivec2 bor
         }
         if (budget <= 0) {
             ++lost_rays;
-            passes = 0.0;  // blocked, never free
+            passes = vec3(0.0);  // blocked, never free
         }
         bool over = t >= stop;
         int shape = over ? -1 : texelFetch(material_texture, pixel, 0).r;
@@ -91,6 +105,7 @@ void march_cone(vec2 p, vec2 d, float width, float slope, vec4 domain, ivec2 bor
         if (beside >= 0 && (!near || shape != beside)) {
             // Past it: its share counts once, where the axis was nearest.
             if (approached) {
+                passes_media(p, d, beside_t, budget, crossed, radiance, passes);
                 vec3 light = shape_emission(beside, at);
                 if (kSceneSurfaces != 0)
                     light = beam_light(beside, int(texelFetch(shape_records, beside * kShapeTexels).x), beside_at, d, beside_t, width + slope * beside_t, border, light, budget);
@@ -106,9 +121,10 @@ void march_cone(vec2 p, vec2 d, float width, float slope, vec4 domain, ivec2 bor
             if (met) {
                 vec3 light = shape_emission(shape, vec2(pixel - border) + 0.5);
                 if (kSceneSurfaces != 0) light = surface_light(at, d, border, light, budget);
+                passes_media(p, d, t, budget, crossed, radiance, passes);
                 if (now < 0.0 && type != kShapeBitmap) light *= texelFetch(shape_records, shape * kShapeTexels + 1).w;
                 radiance += passes * light;
-                passes = 0.0;
+                passes = vec3(0.0);
             } else if (now >= 0.0 && (beside < 0 || exact < lowest - 1e-4)) {
                 approached = t > 0.0;
                 beside = shape;
@@ -121,4 +137,5 @@ void march_cone(vec2 p, vec2 d, float width, float slope, vec4 domain, ivec2 bor
         // No shape is nearer than the distance at the pixel's centre allows; the one asked is known better.
         t += max(clamp(abs(exact), kShortestStep, kHalfDiagonal), room - kHalfDiagonal);
     }
+    passes_media(p, d, max(stop, crossed), budget, crossed, radiance, passes);
 }

@@ -21,16 +21,16 @@ void main() {
     ivec2 texel = ivec2(row, plane * params.rays + 2 * job);
     int middle = row + params.climb * job - params.stride / 2;
 
-    vec4 near = lower_piece(2 * plane, job, row);
-    vec4 far = lower_piece(2 * plane + 1, job, middle);
-    vec4 near_next = lower_piece(2 * plane, min(job + 1, params.jobs - 1), row);
-    vec4 near_before = lower_piece(2 * plane, max(job - 1, 0), row);
-    vec4 before = after(near_before, lower_piece(2 * plane + 1, min(job + 1, params.jobs - 1), middle - params.climb));
-    vec4 next = after(near_next, lower_piece(2 * plane + 1, max(job - 1, 0), middle + params.climb));
+    Piece near = lower_piece(2 * plane, job, row);
+    Piece far = lower_piece(2 * plane + 1, job, middle);
+    Piece near_next = lower_piece(2 * plane, min(job + 1, params.jobs - 1), row);
+    Piece near_before = lower_piece(2 * plane, max(job - 1, 0), row);
+    Piece before = after(near_before, lower_piece(2 * plane + 1, min(job + 1, params.jobs - 1), middle - params.climb));
+    Piece next = after(near_next, lower_piece(2 * plane + 1, max(job - 1, 0), middle + params.climb));
     bool has_both = job > 0 && job + 1 < params.jobs;
-    imageStore(pieces_image, texel, mix(after(near, far), 0.5 * (before + next), has_both ? kSpread : 0.0));
+    store_piece(texel, mixed(after(near, far), mixed(before, next, 0.5), has_both ? kSpread : 0.0));
     if (job + 1 >= params.jobs) return;
-    vec4 steep = lower_piece(2 * plane + 1, job + 1, middle);
-    vec4 flat_far = lower_piece(2 * plane + 1, job, middle + params.climb);
-    imageStore(pieces_image, texel + ivec2(0, 1), 0.5 * (after(near, steep) + after(near_next, flat_far)));
+    Piece steep = lower_piece(2 * plane + 1, job + 1, middle);
+    Piece flat_far = lower_piece(2 * plane + 1, job, middle + params.climb);
+    store_piece(texel + ivec2(0, 1), mixed(after(near, steep), after(near_next, flat_far), 0.5));
 }

@@ -3,6 +3,7 @@
 // others are put on a list for hrc_trace. One thread is a point's even ray and the odd one after it, or at level 0 one ray.
 // A list, because llvmpipe runs through all branches: the march would be paid for by every ray.
 #include "hrc.h"
+#include "scene_records.h"
 
 layout(local_size_x = kHrcGroupX, local_size_y = kHrcGroupY) in;
 layout(std140, binding = kHrcParamsBinding) uniform Params { HrcParams params; };
@@ -13,6 +14,14 @@ layout(HRC_FORMAT, binding = kHrcPiecesBinding) readonly uniform image2D lower_i
 layout(binding = kHrcDistanceUnit) uniform sampler2D distance_texture;
 
 #include "lib/hrc.glsl"
+
+layout(binding = kMediaUnit) uniform samplerBuffer media;
+
+// Whether a ray may come through a medium on its way to p + d.
+bool may_cross_media(vec2 p, vec2 d) {
+    vec4 box = texelFetch(media, 1);
+    return all(lessThanEqual(min(p, p + d), box.zw)) && all(greaterThanEqual(max(p, p + d), box.xy));
+}
 
 const float kHalfDiagonal = 0.7072;
 
@@ -29,9 +38,9 @@ void main() {
     int slot = plane * params.rays;
 
     if (params.compose != 0) {
-        vec4 near = lower_piece(2 * plane, job, row);
-        vec4 far = lower_piece(2 * plane + 1, job, row + params.climb * job - params.stride / 2);
-        imageStore(pieces_image, ivec2(row, slot + 2 * job), after(near, far));
+        Piece near = lower_piece(2 * plane, job, row);
+        Piece far = lower_piece(2 * plane + 1, job, row + params.climb * job - params.stride / 2);
+        store_piece(ivec2(row, slot + 2 * job), after(near, far));
     }
     int ray = params.compose != 0 ? 2 * job + 1 : job;
     if (ray >= params.rays) return;
@@ -43,8 +52,9 @@ void main() {
     // What begins inside a shape is never asked for: whatever leads there is blocked. Not so within a march's last step of
     // the outline.
     bool buried = room_at(p) < -kHalfDiagonal - 0.05;
+    if (kHrcMedia != 0) open = open && !may_cross_media(p, d);
     if (open || buried) {
-        imageStore(pieces_image, ivec2(row, slot), vec4(0.0, 0.0, 0.0, buried ? 0.0 : 1.0));
+        store_piece(ivec2(row, slot), Piece(vec3(0.0), vec3(buried ? 0.0 : 1.0)));
     } else {
         int at = int(imageAtomicAdd(count_image, ivec2(0), 1u));
         imageStore(list_image, ivec2(at & (kHrcListWidth - 1), at / kHrcListWidth), uvec4(uint(row) << 16 | uint(slot)));

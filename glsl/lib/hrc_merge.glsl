@@ -3,6 +3,7 @@
 // Read as images: on llvmpipe that is two to three times as fast as fetching from a texture.
 #include "hrc.h"
 #include "scene_records.h"
+#include "lib/hrc_media.glsl"
 
 layout(local_size_x = kHrcGroupX, local_size_y = kHrcGroupY) in;
 layout(std140, binding = kHrcParamsBinding) uniform Params { HrcParams params; };
@@ -19,7 +20,10 @@ int plane_of(int job) { return int((float(job) + 0.5) * params.per_job); }
 
 // What lies ahead of a ray: its piece, then what arrives at its end through two cones of the level above, or the sky.
 vec3 along_ray(int plane, int ray, int row, int upper_cone, vec4 sky0, vec4 sky1, vec2 weight) {
-    vec4 piece = imageLoad(pieces_image, ivec2(row, (params.piece_step * plane + params.first_plane) * params.lower_rays + params.ray_step * ray));
+    ivec2 piece_at = ivec2(row, (params.piece_step * plane + params.first_plane) * params.lower_rays + params.ray_step * ray);
+    vec4 piece = imageLoad(pieces_image, piece_at);
+    vec3 through = vec3(piece.a);
+    if (kHrcMedia != 0) through = imageLoad(pieces_image, piece_at + ivec2(0, imageSize(pieces_image).y / 2)).rgb;
     int end = row + params.leap * (params.climb * ray - params.stride);
     int inside_plane = min(plane + 1, max(params.upper_planes - 1, 0));
     int inside_row = clamp(end, 0, params.rows - 1);
@@ -28,7 +32,7 @@ vec3 along_ray(int plane, int ray, int row, int upper_cone, vec4 sky0, vec4 sky1
     vec3 ahead0 = imageLoad(upper_image, at).rgb;
     vec3 ahead1 = imageLoad(upper_image, at + ivec2(0, 1)).rgb;
     vec3 ahead = weight.x * (inside ? ahead0 : sky0.rgb) + weight.y * (inside ? ahead1 : sky1.rgb);
-    return dot(weight, vec2(sky0.a, sky1.a)) * piece.rgb + piece.a * ahead;
+    return dot(weight, vec2(sky0.a, sky1.a)) * piece.rgb + through * ahead;
 }
 
 void main() {

@@ -3,6 +3,7 @@
 #include "lib/domain.glsl"
 #include "lib/scene.glsl"
 #include "lib/surface_light.glsl"
+#include "lib/media.glsl"
 
 layout(binding = kCascadeDistanceUnit) uniform sampler2D distance_texture;
 layout(binding = kCascadeMaterialUnit) uniform isampler2D material_texture;
@@ -67,6 +68,11 @@ vec2 where_it_entered(vec2 at, vec2 d, ivec2 border, ivec2 last_pixel, inout int
     return at;
 }
 
+// Which program this is: whether a debug view counts loop iterations instead of gathering light.
+const int kCountSteps = 0;
+
+float march_end;  // where the last march ended, along its ray
+
 // Radiance met between start and end along the ray. Spends of the invocation's loop iterations.
 int march(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, inout int budget, out vec3 radiance) {
     radiance = vec3(0.0);
@@ -118,10 +124,27 @@ int march(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, ino
         t = t + step >= stop && t < stop - 0.01 ? stop - 0.005 : t + step;
     }
     if (hit < 0 && fate == kRayBlocked) ++lost_rays;
+    march_end = min(t, stop);
     if (hit >= 0) {
         radiance = shape_emission(hit, hit_at);
         if (kSceneSurfaces != 0) radiance = surface_light(where_it_entered(end_at, d, border, last_pixel, budget), d, border, radiance, budget);
         if (int(texelFetch(shape_records, hit * kShapeTexels).x) != kShapeBitmap) radiance *= texelFetch(shape_records, hit * kShapeTexels + 1).w;
     }
+    return fate;
+}
+
+// The same with the media on the way: `through` is the share of what comes from beyond that arrives.
+int march_through(vec2 p, vec2 d, float start, float end, vec4 domain, ivec2 border, inout int budget, out vec3 radiance, out vec3 through) {
+    int fate = march(p, d, start, end, domain, border, budget, radiance);
+    through = vec3(1.0);
+    if (kSceneMedia != 0) {
+        vec3 gained;
+        if (!cross_media(p, d, start, march_end, budget, gained, through)) {
+            ++lost_rays;
+            through = vec3(0.0);  // blocked, never free
+        }
+        radiance = gained + through * radiance;
+    }
+    if (fate == kRayBlocked) through = vec3(0.0);
     return fate;
 }

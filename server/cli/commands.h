@@ -13,6 +13,7 @@ void add_health_command(CLI::App& app, CommandContext& context);
 void add_reference_command(CLI::App& app, CommandContext& context);
 void add_compare_command(CLI::App& app, CommandContext& context);
 void add_bench_command(CLI::App& app, CommandContext& context);
+void add_sign_url_command(CLI::App& app, CommandContext& context);
 void add_worker_command(CLI::App& app, CommandContext& context);
 void add_submit_command(CLI::App& app, CommandContext& context);
 void add_worker_process_command(CLI::App& app, CommandContext& context);

@@ -27,6 +27,26 @@ std::shared_ptr<const ToneLut> read_tone_lut(const std::string& path) {
     return std::make_shared<const ToneLut>(std::move(std::get<ToneLut>(decoded)));
 }
 
+Tokens read_tokens(const std::string& path) {
+    constexpr std::size_t kMostBytes = std::size_t(1) << 20;
+    if (path.empty()) return {};
+    const std::string text = read_text(path, kMostBytes);
+    try {
+        return Tokens::parse(text);
+    } catch (const std::runtime_error& error) {
+        throw InputError(path + ": " + error.what());
+    }
+}
+
+std::string read_key(const std::string& path) {
+    constexpr std::size_t kShortest = 32, kLongest = 4096;
+    if (path.empty()) return "";
+    std::string key = read_text(path, kLongest);
+    while (!key.empty() && (key.back() == '\n' || key.back() == '\r')) key.pop_back();
+    if (key.size() < kShortest) throw InputError(path + ": a key has at least " + std::to_string(kShortest) + " bytes");
+    return key;
+}
+
 void add_device_option(CLI::App& command, std::string& device) {
     command.add_option("--device", device, "auto, cpu, gpu, or an index as `penumbra info` lists them")
         ->envname("PENUMBRA_DEVICE")
@@ -55,6 +75,23 @@ void add_config_options(CLI::App& command, Config& config) {
         ->check(whole_number(1, 1024));
     option("--max-pixels", config.max_pixels, "PENUMBRA_MAX_PIXELS", "Largest canvas, in pixels")
         ->check(number_between(1, config.max_pixels));
+    option("--max-shapes", config.bounds.max_shapes, "PENUMBRA_MAX_SHAPES", "Most shapes of a scene")
+        ->check(whole_number(0, long(config.bounds.max_shapes)));
+    option("--max-points", config.bounds.max_points, "PENUMBRA_MAX_POINTS", "Most points of all outlines of a scene")
+        ->check(whole_number(0, long(config.bounds.max_points)));
+    option("--max-lights", config.bounds.max_lights, "PENUMBRA_MAX_LIGHTS", "Most lights of a scene")
+        ->check(whole_number(0, long(config.bounds.max_lights)));
+    option("--max-texels", config.bounds.max_bitmap_texels, "PENUMBRA_MAX_TEXELS", "Most texels of all bitmaps of a scene")
+        ->check(number_between(0, config.bounds.max_bitmap_texels));
+    option("--max-bounces", config.bounds.max_bounces, "PENUMBRA_MAX_BOUNCES", "Most bounces, also of \"converged\"")
+        ->check(whole_number(0, config.bounds.max_bounces));
+    option("--max-json-depth", config.bounds.max_json_depth, "PENUMBRA_MAX_JSON_DEPTH", "Deepest nesting of a body")
+        ->check(whole_number(8, config.bounds.max_json_depth));
+    option("--max-json-values", config.bounds.max_json_values, "PENUMBRA_MAX_JSON_VALUES", "Most values in a body")
+        ->check(whole_number(100, long(config.bounds.max_json_values)));
+    option("--max-header-bytes", config.max_header_bytes, "PENUMBRA_MAX_HEADER_BYTES", "Longest header section, bytes")
+        ->check(whole_number(1024, 65536));
+    option("--max-headers", config.max_header_lines, "PENUMBRA_MAX_HEADERS", "Most headers")->check(whole_number(8, 1000));
     option("--request-timeout", config.request_timeout_s, "PENUMBRA_REQUEST_TIMEOUT",
            "Seconds for a whole request to arrive")
         ->check(whole_number(1, 3600));
@@ -66,6 +103,21 @@ void add_config_options(CLI::App& command, Config& config) {
     option("--connections", config.spare_http_threads, "PENUMBRA_CONNECTIONS",
            "Connections served beside those that wait for a render")
         ->check(whole_number(2, 1000));
+    option("--waiting-connections", config.max_waiting_connections, "PENUMBRA_WAITING_CONNECTIONS",
+           "Connections that may wait to be served; more get 503")
+        ->check(whole_number(1, 10000));
+    option("--admin-port", config.admin_port, "PENUMBRA_ADMIN_PORT", "Port for /metrics and probes; 0 takes a free one, -1 none")
+        ->check(whole_number(-1, 65535));
+    option("--admin-host", config.admin_host, "PENUMBRA_ADMIN_HOST", "Its address; as --host unless it is said");
+    option("--client-budget", config.client_budget_s, "PENUMBRA_CLIENT_BUDGET",
+           "Seconds of rendering that a client may have in a minute; 0 is no bound")
+        ->check(number_between(0, 3600));
+    command.add_option("--cors-origin", config.cors_origins, "Origin whose scripts may use the service, or *; any number of times")
+        ->envname("PENUMBRA_CORS_ORIGIN");
+    command.add_flag("--trust-forwarded-for", config.trust_forwarded_for, "Tell clients apart by X-Forwarded-For's last address")
+        ->envname("PENUMBRA_TRUST_FORWARDED_FOR");
+    option("--token-file", config.token_file, "PENUMBRA_TOKEN_FILE", "File of bearer tokens, \"NAME TOKEN\" a line: who renders needs one");
+    option("--url-key-file", config.url_key_file, "PENUMBRA_URL_KEY_FILE", "File of the key of signed addresses (penumbra sign-url)");
     command
         .add_option_function<std::string>(
             "--workers", [&config](const std::string& word) { config.workers = same_letters(word, "auto") ? -1 : std::stoi(word); },
@@ -84,6 +136,12 @@ void add_config_options(CLI::App& command, Config& config) {
     option("--max-deadline", config.max_deadline_s, "PENUMBRA_MAX_DEADLINE",
            "Seconds that a request may take at most; clients may ask for less")
         ->check(whole_number(1, 86400));
+    option("--max-jobs", config.max_jobs, "PENUMBRA_MAX_JOBS", "Jobs kept, those that have ended included; 0 takes none")
+        ->check(whole_number(0, 100'000));
+    option("--job-ttl", config.job_ttl_s, "PENUMBRA_JOB_TTL", "Seconds that a job is kept after its end")->check(whole_number(1, 7 * 86400));
+    option("--max-job-time", config.max_job_s, "PENUMBRA_MAX_JOB_TIME", "Seconds that a job, or an animation, may take")
+        ->check(whole_number(1, 7 * 86400));
+    option("--max-frames", config.max_frames, "PENUMBRA_MAX_FRAMES", "Most frames of an animation")->check(whole_number(1, 60'000));
     option("--shutdown-timeout", config.shutdown_timeout_s, "PENUMBRA_SHUTDOWN_TIMEOUT",
            "Seconds after the first signal after which renders are ended")
         ->check(whole_number(0, 86400));

@@ -25,6 +25,10 @@ void add_tone_lut_option(CLI::App& command, std::string& path);
 // Empty for an empty path. Throws InputError when there is no such table.
 std::shared_ptr<const ToneLut> read_tone_lut(const std::string& path);
 
+// --token-file and --url-key-file; nothing for an empty path. Throw InputError.
+Tokens read_tokens(const std::string& path);
+std::string read_key(const std::string& path);
+
 void add_device_option(CLI::App& command, std::string& device);
 
 }  // namespace penumbra

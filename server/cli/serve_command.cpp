@@ -56,19 +56,21 @@ struct Workers {
     BackendFactory make;
 };
 
-Workers workers_of(const Config& config, const Engine& engine, std::shared_ptr<const ToneLut> tone_lut) {
+Workers workers_of(Config& config, const Engine& engine, std::shared_ptr<const ToneLut> tone_lut) {
+    const int processors = usable_processors();
+    config.render_threads = processors;
     if (config.workers == 0) {
         return {1, [&, tone_lut] { return engine.make_backend({.device = config.device, .shader_dir = {}, .tone_lut = tone_lut}); }};
     }
-    const int processors = usable_processors();
     const int count = config.workers > 0 ? config.workers : std::max(processors / 4, 1);
     WorkerProcessOptions options;
     options.program = "/proc/self/exe";  // also when the file has been replaced since
     options.arguments = {"worker-process", "--device", config.device};
     if (!config.tone_lut.empty()) options.arguments.insert(options.arguments.end(), {"--tony-lut", config.tone_lut});
+    config.render_threads = (processors + count - 1) / count;
     // They share the processors: llvmpipe's own count knows neither of the others nor of a quota.
     if (std::getenv("LP_NUM_THREADS") == nullptr) {
-        options.environment = {{"LP_NUM_THREADS", std::to_string((processors + count - 1) / count)}};
+        options.environment = {{"LP_NUM_THREADS", std::to_string(config.render_threads)}};
     }
     options.silence = std::chrono::seconds(config.worker_silence_s);
     options.most_memory_bytes = config.worker_memory_mb << 20;
@@ -76,7 +78,9 @@ Workers workers_of(const Config& config, const Engine& engine, std::shared_ptr<c
     return {std::size_t(count), [options] { return make_process_backend(options); }};
 }
 
-int serve(const Config& config, const Engine& engine) {
+int serve(Config config, const Engine& engine) {
+    config.tokens = read_tokens(config.token_file);
+    config.url_key = read_key(config.url_key_file);
     const std::shared_ptr<const ToneLut> tone_lut = read_tone_lut(config.tone_lut);
     // Blocked before any thread exists, so that no thread but this one is interrupted.
     const sigset_t signals = ending_signals();
@@ -91,8 +95,11 @@ int serve(const Config& config, const Engine& engine) {
         complain(why);
         return kWorldFailed;
     }
-    if (!config.port_file.empty()) write_text(config.port_file, std::to_string(server.port()) + "\n");
-    log.info("listening on " + server.url(), {{"version", version()}});
+    if (!config.port_file.empty()) {
+        write_text(config.port_file, std::to_string(server.port()) + "\n" +
+                                         (server.admin_port() > 0 ? std::to_string(server.admin_port()) + "\n" : ""));
+    }
+    log.info("listening on " + server.url(), {{"version", version()}, {"admin_port", std::int64_t(server.admin_port())}});
 
     bool told_ready = false;
     int signal = 0;

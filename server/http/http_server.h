@@ -23,6 +23,7 @@ public:
     std::string start();
 
     int port() const;         // the real one, also when the configured one is 0
+    int admin_port() const;   // the same; 0 without one
     std::string url() const;  // "http://127.0.0.1:8080"
     bool listening() const;   // false before start(), after stop(), and when listening failed
 

@@ -176,7 +176,7 @@ ssize_t GuardedStream::read(char* data, std::size_t size) {
 }
 
 ssize_t GuardedStream::write(const char* data, std::size_t size) {
-    if (!answered_) response_deadline_ = Clock::now() + limits_.response_time;
+    if (!answered_ || exchange_->streaming) response_deadline_ = Clock::now() + limits_.response_time;
     answered_ = true;
     std::size_t sent = 0;
     while (sent < size) {
@@ -268,6 +268,8 @@ GuardedServer::GuardedServer(const GuardLimits& limits, ReadHeaders read_headers
 }
 
 Exchange& GuardedServer::exchange() { return *t_exchange; }
+
+bool GuardedServer::has_backlog() const { return wait_for(svr_sock_, POLLIN, milliseconds(0)); }
 
 void GuardedServer::widen_backlog() { ::listen(svr_sock_, 1024); }
 

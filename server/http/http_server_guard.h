@@ -19,11 +19,10 @@
 
 #include <httplib.h>
 
+#include "server/http/fault.h"
 #include "server/http/header_grammar.h"
 
 namespace penumbra {
-
-enum class Fault { none, malformed, headers_too_large, body_too_large, timeout, too_many_connections };
 
 struct GuardLimits {
     std::size_t header_bytes = 0;
@@ -47,6 +46,12 @@ struct Exchange {
     bool body_read = false;
     std::uint32_t body_end = 0;  // the last four bytes of the body, framing and all
     bool close = false;  // end the connection after the answer
+    bool streaming = false;  // the answer comes in parts: each has the time that a whole one has
+    bool accepts_gzip = false;
+    std::string trace_parent, trace_id;  // as sent, when it was sound
+    std::string origin;                  // of a browser's script
+    std::string client;                  // whose share of the renderers it takes
+    const char* endpoint = "none";       // for figures: the path's pattern
     std::function<bool()> client_gone;
 };
 
@@ -137,6 +142,8 @@ public:
     // Connections end after their present request. Called before stop().
     void drain() { draining_ = true; }
     bool draining() const { return draining_; }
+    // Whether connections wait that have not been taken on: closing the socket would reset them.
+    bool has_backlog() const;
     void serve(socket_t socket) { process_and_close_socket(socket); }  // one connection, on this thread
     void widen_backlog();  // after binding: the library listens with a backlog of 5
 

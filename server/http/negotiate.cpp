@@ -89,6 +89,20 @@ FormatWishes parse_accept(std::string_view accept) {
     return wishes;
 }
 
+std::optional<std::size_t> choose_media_type(std::string_view accept, const std::vector<std::string_view>& types) {
+    const std::vector<MediaRange> ranges = parse_ranges(accept);
+    if (ranges.empty()) return 0;
+    std::optional<std::size_t> best;
+    double best_q = 0;
+    for (std::size_t i = 0; i < types.size(); ++i) {
+        const double q = quality(ranges, types[i]);
+        if (q <= best_q) continue;
+        best = i;
+        best_q = q;
+    }
+    return best;
+}
+
 std::string refuse_content_type(std::string_view content_type) {
     const std::vector<std::string> parts = split(content_type, ';');
     const std::string& type = parts[0];
@@ -153,6 +167,27 @@ std::optional<double> parse_wait(std::string_view prefer) {
         if (number) return std::stod(value);
     }
     return std::nullopt;
+}
+
+bool has_preference(std::string_view prefer, std::string_view name, std::string_view value) {
+    for (const std::string& preference : split(prefer, ',')) {
+        const std::string entry = lower_trimmed(preference.substr(0, preference.find(';')));
+        const std::size_t equals = entry.find('=');
+        if (equals == std::string::npos || lower_trimmed(entry.substr(0, equals)) != name) continue;
+        std::string given = lower_trimmed(entry.substr(equals + 1));
+        std::erase(given, '"');
+        if (given == value) return true;
+    }
+    return false;
+}
+
+bool accepts_gzip(std::string_view accept_encoding) {
+    double gzip = -1, any = -1;
+    for (const MediaRange& coding : parse_ranges(accept_encoding)) {
+        if (coding.type == "gzip" || coding.type == "x-gzip") gzip = std::max(gzip, coding.q);
+        if (coding.type == "*") any = coding.q;
+    }
+    return gzip >= 0 ? gzip > 0 : any > 0;
 }
 
 bool is_request_id(std::string_view id) {

@@ -14,6 +14,9 @@ namespace penumbra {
 // Accept (RFC 9110, 12.5.1) as wishes; an empty header accepts everything.
 FormatWishes parse_accept(std::string_view accept);
 
+// Which of these types Accept likes best; among equals, and without a word, the first. Nothing: it takes none of them.
+std::optional<std::size_t> choose_media_type(std::string_view accept, const std::vector<std::string_view>& types);
+
 // Why a body with this Content-Type is refused: a sentence; empty when it is JSON in UTF-8.
 std::string refuse_content_type(std::string_view content_type);
 
@@ -33,6 +36,11 @@ bool has_directive(std::string_view list, std::string_view name);
 
 // Seconds of `Prefer: wait=SECONDS` (RFC 7240, 4.3; a fraction is taken too), nothing when there is no such wish.
 std::optional<double> parse_wait(std::string_view prefer);
+// Whether Prefer has `name=value`, in any case.
+bool has_preference(std::string_view prefer, std::string_view name, std::string_view value);
+
+// Whether Accept-Encoding takes gzip.
+bool accepts_gzip(std::string_view accept_encoding);
 
 // Whether a client's request id may be used as it is: ^[A-Za-z0-9._-]{1,64}$.
 bool is_request_id(std::string_view id);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -19,13 +20,17 @@ struct Row {
     const char* explanation;
 };
 
-constexpr std::array<Row, 19> kRows{{
+constexpr std::array<Row, 27> kRows{{
     {ProblemKind::bad_request, 400, "bad-request", "Malformed request",
      "The request breaks the rules of HTTP or carries something that this endpoint does not take. "
      "`detail` says what."},
     {ProblemKind::not_json, 400, "not-json", "The body is not JSON",
      "The text could not be parsed. `errors` says where it went wrong. A body must be one JSON object in "
      "UTF-8."},
+    {ProblemKind::unauthorized, 401, "unauthorized", "A token is needed",
+     "This service answers those who send one of its tokens: Authorization: Bearer TOKEN (--token-file)."},
+    {ProblemKind::bad_signature, 403, "bad-signature", "The address is not signed",
+     "A picture by GET needs an address that was signed with the service's key (penumbra sign-url), has not expired, and was not changed."},
     {ProblemKind::not_found, 404, "not-found", "No such resource",
      "There is nothing under this path. GET / lists what there is."},
     {ProblemKind::method_not_allowed, 405, "method-not-allowed", "Method not allowed",
@@ -35,6 +40,8 @@ constexpr std::array<Row, 19> kRows{{
     {ProblemKind::request_timeout, 408, "request-timeout", "The request took too long to arrive",
      "A request, its body included, has to arrive within the time that the operator set "
      "(--request-timeout)."},
+    {ProblemKind::job_not_done, 409, "job-not-done", "The job has not ended yet",
+     "Its result is there when it has: GET /v1/jobs/ID/events tells when, Retry-After when to look again."},
     {ProblemKind::body_too_large, 413, "body-too-large", "The body is too large",
      "Bodies are limited (--max-body-mb). Shrink the bitmaps: they are decoded at their own size "
      "whatever their size in the scene."},
@@ -49,9 +56,18 @@ constexpr std::array<Row, 19> kRows{{
     {ProblemKind::not_supported_yet, 422, "not-supported-yet", "The scene asks for what is not built yet",
      "The scene is right, but asks for features of the format that this version does not render. "
      "`errors` names each key. GET /v1/info lists the formats, methods and tone maps there are."},
+    {ProblemKind::too_expensive, 422, "too-expensive", "The render takes longer than the request may",
+     "By itself, without any wait, the render is expected to take longer than the request's deadline allows (Prefer: wait=SECONDS, at "
+     "most --max-deadline). Ask for less: a lower quality, a smaller canvas; or for a best effort (Prefer: on-deadline=partial). "
+     "POST /v1/estimate tells prices."},
+    {ProblemKind::beyond_device, 422, "beyond-device", "The device cannot hold the scene",
+     "The scene keeps the format's limits, but the device or the method does not take it; `detail` says why."},
     {ProblemKind::scene_refused, 422, "scene-refused", "The scene has ended two renderers",
      "Rendering this scene has ended two renderers, by a crash or because they hung. It is not tried again until the service "
      "starts anew. The operator finds the reason in the log."},
+    {ProblemKind::budget_spent, 429, "budget-spent", "This client's share of the renderers is spent",
+     "Each client may have so many seconds of rendering a minute (--client-budget). Retry-After says when there is enough again for this "
+     "render; RateLimit tells what is left. Pictures that are kept cost nothing."},
     {ProblemKind::headers_too_large, 431, "headers-too-large", "The headers are too large",
      "The header section is limited in bytes and in lines."},
     {ProblemKind::internal, 500, "internal", "The render failed",
@@ -60,8 +76,13 @@ constexpr std::array<Row, 19> kRows{{
     {ProblemKind::queue_full, 503, "queue-full", "The queue is full",
      "More renders wait than the operator allows (--queue). Retry-After is computed from the measured "
      "time of the renders before."},
+    {ProblemKind::deadline_unreachable, 503, "deadline-unreachable", "It would not be done in time",
+     "The renders that come first and this one are expected to take longer than the request may. Retry-After is the time after which, as "
+     "things stand, it would be taken."},
     {ProblemKind::not_ready, 503, "not-ready", "The renderer is not ready",
      "The renderer is starting, or its self test failed. GET /readyz says which."},
+    {ProblemKind::too_many_jobs, 503, "too-many-jobs", "Too many jobs",
+     "As many jobs are waiting or under way as the operator allows (--max-jobs). Those that have ended go first."},
     {ProblemKind::too_many_connections, 503, "too-many-connections", "Too many connections",
      "More connections are open than the service has room for."},
     {ProblemKind::client_closed, 499, "client-closed", "The client closed its connection",
@@ -87,6 +108,18 @@ const char* reason_phrase(int status) {
 }
 
 }  // namespace
+
+ProblemKind kind_of(Fault fault) {
+    switch (fault) {
+        case Fault::headers_too_large: return ProblemKind::headers_too_large;
+        case Fault::body_too_large: return ProblemKind::body_too_large;
+        case Fault::timeout: return ProblemKind::request_timeout;
+        case Fault::too_many_connections: return ProblemKind::too_many_connections;
+        case Fault::malformed:
+        case Fault::none: break;
+    }
+    return ProblemKind::bad_request;
+}
 
 HttpProblem make_problem(ProblemKind kind, std::string detail) {
     HttpProblem problem;
@@ -133,6 +166,14 @@ HttpProblem problem_of(const RenderResponse& response, int retry_after_s) {
             problem = make_problem(ProblemKind::not_ready, "The renderer cannot take work now.");
             problem.headers = {{"Retry-After", std::to_string(retry_after_s)}};
             break;
+        case RenderFailure::too_dear: problem = make_problem(ProblemKind::too_expensive, response.detail); break;
+        case RenderFailure::beyond_device: problem = make_problem(ProblemKind::beyond_device, response.detail); break;
+        case RenderFailure::too_late:
+        case RenderFailure::budget_spent:
+            problem = make_problem(response.failure == RenderFailure::too_late ? ProblemKind::deadline_unreachable : ProblemKind::budget_spent,
+                                   response.detail);
+            problem.headers = {{"Retry-After", std::to_string(int(std::clamp(std::ceil(response.retry_after_s), 1.0, 3600.0)))}};
+            break;
         case RenderFailure::lethal: problem = make_problem(ProblemKind::scene_refused, ""); break;
         case RenderFailure::gone: problem = make_problem(ProblemKind::client_closed, ""); break;
         case RenderFailure::timed_out:
@@ -143,6 +184,7 @@ HttpProblem problem_of(const RenderResponse& response, int retry_after_s) {
             problem = make_problem(ProblemKind::internal, "The render failed on the service's side.");
             break;
     }
+    if (response.quote) problem.figures = {{"price_ms", response.quote->ms}};
     problem.errors = response.problems;
     problem.errors_left_out = response.problems_left_out;
     return problem;
@@ -163,6 +205,7 @@ int status_of(const HttpProblem& problem) { return row_of(problem.kind).status; 
 std::vector<std::pair<std::string, std::string>> headers_of(const HttpProblem& problem) {
     auto headers = problem.headers;
     headers.emplace_back("Cache-Control", "no-store");
+    if (problem.kind == ProblemKind::unauthorized) headers.emplace_back("WWW-Authenticate", "Bearer realm=\"penumbra\"");
     if (problem.kind == ProblemKind::unsupported_media_type) {
         headers.emplace_back("Accept-Post", "application/json");
     }
@@ -176,6 +219,7 @@ std::string body_of(const HttpProblem& problem, const std::string& request_id) {
                                    {"status", row.status},
                                    {"detail", problem.detail.empty() ? row.explanation : problem.detail},
                                    {"instance", request_id}};
+    for (const auto& [name, value] : problem.figures) json[name] = value;
     if (!problem.errors.empty()) {
         json["errors"] = nlohmann::ordered_json::array();
         for (const LocatedProblem& error : problem.errors) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/http/fault.h"
 #include "server/service/render_service.h"
 
 namespace penumbra {
@@ -32,6 +33,14 @@ enum class ProblemKind {
     too_many_connections,
     scene_refused,
     client_closed,
+    unauthorized,
+    bad_signature,
+    too_expensive,
+    beyond_device,
+    budget_spent,
+    deadline_unreachable,
+    job_not_done,
+    too_many_jobs,
     deadline_exceeded,
 };
 
@@ -41,10 +50,12 @@ struct HttpProblem {
     std::vector<LocatedProblem> errors;
     std::size_t errors_left_out = 0;
     std::vector<std::pair<std::string, std::string>> headers;  // beyond the common ones
+    std::vector<std::pair<std::string, double>> figures;       // further members, where numbers tell more
 };
 
 inline constexpr std::string_view kProblemMediaType = "application/problem+json";
 
+ProblemKind kind_of(Fault fault);
 HttpProblem make_problem(ProblemKind kind, std::string detail);
 HttpProblem method_not_allowed(const std::string& method, const std::string& allow);
 // Precondition: response.failure is not none.

@@ -11,6 +11,7 @@
 #include "core/outline/path_data.h"
 #include "core/outline/text.h"
 #include "core/scene/wording.h"
+#include "server/json/material_reader.h"
 #include "server/json/scene_keys.h"
 
 namespace penumbra {
@@ -80,8 +81,7 @@ Polygon OutlineReader::nothing(const Path& where, OutlineKey key) {
 
 Polygon OutlineReader::path(const Path& where, NodeId id, Shape& shape) {
     const Members members(reader_, where, id, kPathKeys, "a path");
-    members.colour("emission", shape.emission);
-    members.colour("albedo", shape.albedo);
+    read_material(reader_, limits_, where, members, shape);
     const bool nonzero = choice(members, where, "fill_rule", kFillRules) == 0;
     Point position(0);
     if (const NodeId at = members.find("position"); at != kNoNode) {
@@ -106,8 +106,7 @@ Polygon OutlineReader::path(const Path& where, NodeId id, Shape& shape) {
 
 Polygon OutlineReader::text(const Path& where, NodeId id, Shape& shape) {
     const Members members(reader_, where, id, kTextKeys, "a text");
-    members.colour("emission", shape.emission);
-    members.colour("albedo", shape.albedo);
+    read_material(reader_, limits_, where, members, shape);
     TextSettings settings;
     settings.anchor =
         std::array{TextAnchor::start, TextAnchor::middle, TextAnchor::end}[choice(members, where, "anchor", kAnchors)];

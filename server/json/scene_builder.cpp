@@ -240,7 +240,7 @@ private:
         Circle circle;
         members.need_pair("center", "a point [x, y]", circle.center);
         members.need_number("radius", circle.radius);
-        read_material(reader_, where, members, shape);
+        read_material(reader_, limits_, where, members, shape);
         return circle;
     }
 
@@ -250,7 +250,7 @@ private:
         members.need_pair("center", "a point [x, y]", ellipse.center);
         members.need_pair("radii", "two radii [x, y]", ellipse.radii);
         members.number("rotation", ellipse.rotation_deg);
-        read_material(reader_, where, members, shape);
+        read_material(reader_, limits_, where, members, shape);
         return ellipse;
     }
 
@@ -261,7 +261,7 @@ private:
         members.need_pair("size", "a size [width, height]", rect.size);
         members.number("rotation", rect.rotation_deg);
         members.number("corner_radius", rect.corner_radius);
-        read_material(reader_, where, members, shape);
+        read_material(reader_, limits_, where, members, shape);
         return rect;
     }
 
@@ -271,7 +271,7 @@ private:
         members.need_pair("from", "a point [x, y]", line.from);
         members.need_pair("to", "a point [x, y]", line.to);
         members.number("width", line.width);
-        read_stroke_material(reader_, where, members, shape);
+        read_stroke_material(reader_, limits_, where, members, shape);
         return line;
     }
 
@@ -281,7 +281,7 @@ private:
         members.need_points("points", polyline.points);
         members.number("width", polyline.width);
         members.boolean("closed", polyline.closed);
-        read_stroke_material(reader_, where, members, shape);
+        read_stroke_material(reader_, limits_, where, members, shape);
         return polyline;
     }
 
@@ -289,7 +289,7 @@ private:
         const Members members(reader_, where, id, kPolygonKeys, "a polygon");
         Polygon polygon;
         members.need_points("points", polygon.points);
-        read_material(reader_, where, members, shape);
+        read_material(reader_, limits_, where, members, shape);
         return polygon;
     }
 

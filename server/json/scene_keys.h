@@ -29,22 +29,24 @@ inline constexpr std::string_view kColourKeys[] = {"color", "intensity"};
 
 inline constexpr std::string_view kShapeTypes[] = {"circle",   "ellipse", "rect",  "line",
                                                    "polyline", "polygon", "bitmap", "path", "text"};
-inline constexpr std::string_view kCircleKeys[] = {"type", "emission", "albedo", "center",
+inline constexpr std::string_view kCircleKeys[] = {"type", "emission", "albedo", "medium", "center",
                                                    "radius"};
-inline constexpr std::string_view kEllipseKeys[] = {"type",   "emission", "albedo",
+inline constexpr std::string_view kEllipseKeys[] = {"type",   "emission", "albedo", "medium",
                                                     "center", "radii",    "rotation"};
-inline constexpr std::string_view kRectKeys[] = {"type", "emission", "albedo",       "center",
+inline constexpr std::string_view kRectKeys[] = {"type", "emission", "albedo", "medium",       "center",
                                                  "size", "rotation", "corner_radius"};
-inline constexpr std::string_view kLineKeys[] = {"type", "emission", "albedo",
+inline constexpr std::string_view kLineKeys[] = {"type", "emission", "albedo", "medium",
                                                  "from", "to",       "width"};
-inline constexpr std::string_view kPolylineKeys[] = {"type",   "emission", "albedo",
+inline constexpr std::string_view kPolylineKeys[] = {"type",   "emission", "albedo", "medium",
                                                      "points", "width",    "closed"};
-inline constexpr std::string_view kPolygonKeys[] = {"type", "emission", "albedo", "points"};
+inline constexpr std::string_view kPolygonKeys[] = {"type", "emission", "albedo", "medium", "points"};
 inline constexpr std::string_view kBitmapKeys[] = {
     "type", "image", "position", "size", "emission_scale", "solid_above", "as"};
 
-inline constexpr std::string_view kPathKeys[] = {"type", "emission", "albedo", "d", "fill_rule", "position", "scale"};
-inline constexpr std::string_view kTextKeys[] = {"type", "emission", "albedo", "text", "position", "size", "anchor"};
+inline constexpr std::string_view kPathKeys[] = {"type", "emission", "albedo", "medium", "d", "fill_rule", "position", "scale"};
+inline constexpr std::string_view kTextKeys[] = {"type", "emission", "albedo", "medium", "text", "position", "size", "anchor"};
+
+inline constexpr std::string_view kMediumKeys[] = {"extinction", "emission", "transmission", "depth"};
 
 inline constexpr std::string_view kLightTypes[] = {"point", "spot", "directional"};
 inline constexpr std::string_view kPointLightKeys[] = {"type",    "position", "intensity", "radius",

@@ -5,12 +5,26 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
+#include "core/scene/limits.h"
+#include "server/json/scene_json.h"
+#include "server/service/tokens.h"
 #include "server/service/warm_up.h"
 
 namespace penumbra {
 
 enum class LogFormat { text, json };
+
+struct SceneBounds {
+    int max_json_depth = TextLimits().max_depth;
+    std::size_t max_json_values = TextLimits().max_nodes;
+    std::size_t max_shapes = Limits().max_shapes;
+    std::size_t max_points = Limits().max_points;
+    std::size_t max_lights = Limits().max_lights;
+    double max_bitmap_texels = Limits().max_bitmap_texels;
+    int max_bounces = Limits().max_converging_bounces;
+};
 
 struct Config {
     // Only this machine: a service without authentication is opened to others by a decision.
@@ -33,6 +47,8 @@ struct Config {
     // Scenes parsed at the same time: parsing takes up to 26 bytes of memory per byte of JSON.
     std::size_t parse_slots = 4;
 
+    // The format's own bounds (core/scene/limits.h, server/json/scene_json.h), which operators may lower.
+    SceneBounds bounds;
     // Room for bitmaps as data URLs; the scene without them is seldom over 1 MiB.
     std::size_t max_body_bytes = 64u << 20;
     // The format's own limit (core/scene/limits.h). Operators lower it to bound a render's time.
@@ -58,6 +74,17 @@ struct Config {
     int worker_silence_s = 30;
     // The most that a request may take from its first byte on; clients may ask for less.
     int max_deadline_s = 120;
+    // Threads of a renderer, for the first guess at what renders take: filled from the number of workers.
+    int render_threads = 2;
+    // Seconds of rendering that a client may have in a minute; 0: no bound.
+    double client_budget_s = 0;
+    // Renders that outlive their request: kept at most, 0: none are taken; after their end, in seconds and in bytes of pictures.
+    std::size_t max_jobs = 64;
+    int job_ttl_s = 600;
+    std::size_t job_bytes = 256u << 20;
+    // Of a job, and of all frames of an animation together.
+    int max_job_s = 3600;
+    std::size_t max_frames = 600;
     // What still renders so long after the first signal is ended.
     int shutdown_timeout_s = 60;
 
@@ -66,6 +93,17 @@ struct Config {
 
     // Before the first request. `common` takes about a second with Mesa's shader cache, several without.
     WarmUp warm_up = WarmUp::common;
+
+    // Metrics and probes for operators: -1 is no such port, 0 a free one.
+    int admin_port = -1;
+    std::string admin_host;  // empty: as host
+    // Browsers' scripts from there may use the service; "*": from everywhere.
+    std::vector<std::string> cors_origins;
+    std::string token_file, url_key_file;
+    Tokens tokens;        // of token_file: who may render; none: everybody
+    std::string url_key;  // of url_key_file: signs addresses of pictures; empty: none are taken
+    // A client is told apart by the last address in X-Forwarded-For, which our own proxy has put there.
+    bool trust_forwarded_for = false;
 
     LogFormat log_format = LogFormat::text;
 };

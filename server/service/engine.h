@@ -3,6 +3,7 @@
 // server/service/renderer_backend.cpp fills it with the real one; tests fill it with a fake.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -21,6 +22,8 @@ struct RenderBackend {
 
     // Throws when the world fails; RenderStopped when `stop` said so; BackendLost when nothing more is to be expected of it.
     virtual RenderResult render(const Scene& scene, const StopCheck& stop) = 0;
+    // Dispatches of the render under way; asked while `stop` is.
+    virtual std::uint64_t slices() const { return 0; }
     virtual std::string self_test() = 0;  // empty when right
     virtual const DeviceInfo& device() const = 0;
     // Asked when there is nothing to do. Empty while all is well, else why another one should take its place.

@@ -48,6 +48,7 @@ std::string Log::line(std::string_view message, std::initializer_list<LogField> 
     for (const LogField& field : fields) {
         std::string value;
         if (const auto* text = std::get_if<std::string>(&field.value)) {
+            if (text->empty()) continue;  // what there is not
             value = json ? to_json(*text) : plain(*text);
         } else if (const auto* whole = std::get_if<std::int64_t>(&field.value)) {
             value = std::to_string(*whole);

@@ -11,6 +11,7 @@
 #include "core/scene/words.h"
 #include "server/service/digest.h"
 #include "server/service/identity.h"
+#include "server/service/render_service_parts.h"
 
 namespace penumbra {
 namespace {
@@ -25,17 +26,6 @@ RenderFailure failure_of(RenderWorker::Refusal refusal) {
     return refusal == RenderWorker::Refusal::queue_full ? RenderFailure::queue_full
                                                         : RenderFailure::not_ready;
 }
-
-class Slot {
-public:
-    explicit Slot(std::counting_semaphore<>& slots) : slots_(slots) { slots_.acquire(); }
-    ~Slot() { slots_.release(); }
-    Slot(const Slot&) = delete;
-    Slot& operator=(const Slot&) = delete;
-
-private:
-    std::counting_semaphore<>& slots_;
-};
 
 SharedAnswer make_answer(RenderResult&& result, const OutputSettings& output) {
     auto answer = std::make_shared<Answer>();
@@ -58,19 +48,19 @@ std::string digest_of_file(const std::string& path) {
 // The key of texts that are worth remembering: a few hundred bytes each.
 constexpr std::size_t kKnownTexts = 4096;
 
-RenderResponse refused(CheckedScene&& checked) {
-    RenderResponse response;
-    response.failure = checked.failure;
-    response.problems = std::move(checked.problems);
-    response.problems_left_out = checked.problems_left_out;
-    return response;
-}
-
 }  // namespace
 
 SceneLimits limits_of(const Config& config) {
     SceneLimits limits;
     limits.scene.max_canvas_pixels = std::min(limits.scene.max_canvas_pixels, config.max_pixels);
+    limits.scene.max_shapes = std::min(limits.scene.max_shapes, config.bounds.max_shapes);
+    limits.scene.max_points = std::min(limits.scene.max_points, config.bounds.max_points);
+    limits.scene.max_lights = std::min(limits.scene.max_lights, config.bounds.max_lights);
+    limits.scene.max_bitmap_texels = std::min(limits.scene.max_bitmap_texels, config.bounds.max_bitmap_texels);
+    limits.scene.max_bounces = std::min(limits.scene.max_bounces, config.bounds.max_bounces);
+    limits.scene.max_converging_bounces = std::min(limits.scene.max_converging_bounces, config.bounds.max_bounces);
+    limits.text.max_depth = std::min(limits.text.max_depth, config.bounds.max_json_depth);
+    limits.text.max_nodes = std::min(limits.text.max_nodes, config.bounds.max_json_values);
     limits.text.max_bytes = config.max_body_bytes;
     limits.text.max_string_bytes = std::min(limits.text.max_string_bytes, config.max_body_bytes);
     limits.fonts = std::make_shared<const FontSource>(config.font);
@@ -116,10 +106,13 @@ RenderResponse render_to_bytes(const RenderRequest& request, const SceneLimits& 
 // One render that one or more requests wait for. The first of them that sees it done encodes it for all.
 struct RenderService::Flight {
     OutputSettings output;
+    Pricing::Quote quote;
+    std::string client;  // who pays for it
     std::mutex mutex;
     std::condition_variable changed;
     int waiting = 1;
     StopFlag stop = std::make_shared<std::atomic<bool>>(false);
+    std::shared_ptr<std::atomic<std::uint64_t>> slices = std::make_shared<std::atomic<std::uint64_t>>(0);
     std::optional<RenderOutcome> outcome;
     bool encoding = false;
     bool done = false;
@@ -139,9 +132,15 @@ RenderService::RenderService(RenderWorker& worker, UnsupportedFeatures unsupport
       keys_(kKnownTexts),
       cache_(config.cache_bytes),
       table_id_(digest_of_file(config.tone_lut)),
-      lethal_(kKnownTexts) {}
+      lethal_(kKnownTexts),
+      books_(std::make_shared<Books>(config)) {
+    build_id();  // takes a tenth of a second, which no request should wait for
+}
 
 RenderService::~RenderService() = default;
+
+Metrics& RenderService::metrics() { return books_->metrics; }
+const ClientBudgets& RenderService::budgets() const { return books_->budgets; }
 
 RenderService::CacheFigures RenderService::cache_figures() const {
     return {cache_.figures(), hits_, misses_, shared_, not_modified_};
@@ -153,7 +152,7 @@ std::string RenderService::tag_of(const std::string& key) const {
 }
 
 CheckedScene RenderService::check(const RenderRequest& request, const std::string& text_key, std::string& key) {
-    const Slot slot(parse_slots_);
+    const ParseSlot slot(parse_slots_);
     CheckedScene checked = check_scene(request, limits_, unsupported_);
     if (checked.scene) {
         key = sha256({normal_form(*checked.scene)});
@@ -163,11 +162,21 @@ CheckedScene RenderService::check(const RenderRequest& request, const std::strin
 }
 
 RenderResponse RenderService::render(const RenderRequest& request) {
-    const Clock::time_point start = Clock::now();
+    if (request.partial) return render_in_time(request);
     // A text that was right once is known without being parsed.
-    const std::string text_key = sha256({request.text, to_string(request.formats)});
-    std::string key = keys_.find(text_key);
+    const std::string text_key = text_key_of(request);
+    return deliver(request, text_key, keys_.find(text_key), {});
+}
+
+RenderResponse RenderService::render_scene(const RenderRequest& request, Scene scene) {
     CheckedScene checked;
+    std::string key = sha256({normal_form(scene)});
+    checked.scene = std::move(scene);
+    return deliver(request, "", std::move(key), std::move(checked));
+}
+
+RenderResponse RenderService::deliver(const RenderRequest& request, const std::string& text_key, std::string key, CheckedScene checked) {
+    const Clock::time_point start = Clock::now();
     const auto parse = [&] {
         // A scene that cannot be rendered now is not worth its parsing.
         if (const auto refusal = worker_.refusal()) {
@@ -183,6 +192,7 @@ RenderResponse RenderService::render(const RenderRequest& request) {
     if (key.empty() && !parse()) return refused(std::move(checked));
 
     RenderResponse response;
+    if (books_->budgets.limited()) response.budget = books_->budgets.state(request.client);
     if (!lethal_.find(key).empty()) {
         response.failure = RenderFailure::lethal;
         return response;
@@ -191,12 +201,14 @@ RenderResponse RenderService::render(const RenderRequest& request) {
     if (!response.tag.empty() && !request.anew) {
         if (request.client_has && request.client_has(response.tag)) {
             ++not_modified_;
+            books_->metrics.count("penumbra_cache_requests_total", {{"source", "client"}});
             response.not_modified = true;
             return response;
         }
         response.answer = cache_.find(response.tag);
         if (response.answer) {
             ++hits_;
+            books_->metrics.count("penumbra_cache_requests_total", {{"source", "cache"}});
             response.source = Source::cache;
             response.parse_ms = ms_since(start);
             return response;
@@ -210,11 +222,13 @@ RenderResponse RenderService::render(const RenderRequest& request) {
     if (flight) {
         response.source = Source::shared;
     } else {
-        flight = begin(key, std::make_shared<const Scene>(std::move(*checked.scene)), response);
+        flight = begin(request, key, std::make_shared<const Scene>(std::move(*checked.scene)), response);
         if (!flight) return response;
     }
+    books_->metrics.count("penumbra_cache_requests_total", {{"source", response.source == Source::shared ? "shared" : "render"}});
     response.parse_ms = ms_since(start);
     wait_for(request, key, *flight, response);
+    if (books_->budgets.limited()) response.budget = books_->budgets.state(request.client);
     return response;
 }
 
@@ -233,24 +247,36 @@ std::shared_ptr<RenderService::Flight> RenderService::join_locked(const std::str
 }
 
 // Null: it is refused, as the response says.
-std::shared_ptr<RenderService::Flight> RenderService::begin(const std::string& key, std::shared_ptr<const Scene> scene,
-                                                            RenderResponse& response) {
+std::shared_ptr<RenderService::Flight> RenderService::begin(const RenderRequest& request, const std::string& key,
+                                                            std::shared_ptr<const Scene> scene, RenderResponse& response) {
+    auto flight = std::make_shared<Flight>();
+    try {
+        flight->quote = price(key, *scene);
+    } catch (const DeviceError& error) {
+        response.failure = RenderFailure::beyond_device;
+        response.detail = error.what();
+        return nullptr;
+    }
+    response.quote = flight->quote;
     const std::lock_guard lock(flights_mutex_);
     // Another one may have begun it meanwhile.
-    if (auto flight = join_locked(key)) {
+    if (auto other = join_locked(key)) {
         response.source = Source::shared;
-        return flight;
+        return other;
     }
-    auto flight = std::make_shared<Flight>();
+    if (!admit(request, flight->quote, response)) return nullptr;
     flight->output = scene->output;
-    const auto done = [flight](RenderOutcome outcome) {
+    flight->client = request.client;
+    const auto done = [flight, books = books_, key](RenderOutcome outcome) {
+        books->enter(key, flight->client, flight->quote, outcome);
         {
             const std::lock_guard inner(flight->mutex);
             flight->outcome = std::move(outcome);
         }
         flight->changed.notify_all();
     };
-    if (const auto refusal = worker_.submit(std::move(scene), done, flight->stop)) {
+    if (const auto refusal = worker_.submit({std::move(scene), done, flight->stop, request.client, flight->quote.ms, flight->slices})) {
+        books_->budgets.settle(request.client, -flight->quote.ms);
         response.failure = failure_of(*refusal);
         return nullptr;
     }
@@ -267,6 +293,7 @@ void RenderService::wait_for(const RenderRequest& request, const std::string& ke
     const auto ready = [&] { return flight.done || (flight.outcome && !flight.encoding); };
     while (!flight.changed.wait_until(lock, std::min(Clock::now() + kLookUp, request.deadline), ready)) {
         lock.unlock();
+        if (request.progress) request.progress(*flight.slices);
         response.failure = stopping_                            ? RenderFailure::not_ready
                            : Clock::now() >= request.deadline   ? RenderFailure::timed_out
                            : request.gone && request.gone()     ? RenderFailure::gone
@@ -309,6 +336,7 @@ void RenderService::finish(const std::string& key, Flight& flight, RenderOutcome
     try {
         if (outcome.result) {
             answer = make_answer(std::move(*outcome.result), flight.output);
+            books_->metrics.count("penumbra_encode_seconds_total", {{"format", answer->format}}, answer->encode_ms / 1000);
             // Only now is it certain which device it was.
             if (const std::string tag = tag_of(key); !tag.empty()) stored = cache_.put(tag, answer);
         }

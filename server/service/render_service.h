@@ -18,9 +18,12 @@
 #include "core/scene/limits.h"
 #include "server/json/scene_json.h"
 #include "server/service/answer_cache.h"
+#include "server/service/client_budgets.h"
 #include "server/service/config.h"
 #include "server/service/engine.h"
 #include "server/service/formats.h"
+#include "server/service/metrics.h"
+#include "server/service/pricing.h"
 #include "server/service/render_worker.h"
 
 namespace penumbra {
@@ -36,6 +39,11 @@ struct RenderRequest {
     // Until when it is wanted, and whether it still is: asked some times a second while it waits.
     std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
     std::function<bool()> gone;
+    // How long it may take in all, milliseconds: what `deadline` was made of.
+    double allowance_ms = 1e12;
+    std::string client;    // whose share of the renderers it takes
+    std::function<void(std::uint64_t slices)> progress;  // told now and then how many dispatches there were
+    bool partial = false;  // at the deadline the best that is done by then, instead of a failure
 };
 
 // Where an answer came from.
@@ -56,6 +64,10 @@ enum class RenderFailure {
     timed_out,  // it was not done by the deadline
     gone,       // the client did not wait
     lethal,     // rendering this scene has cost two renderers
+    too_dear,       // by itself it takes longer than the request may
+    too_late,       // it would be done in time, but for those before it
+    beyond_device,  // the device cannot hold it
+    budget_spent,   // this client has had its share
 };
 
 struct RenderResponse {
@@ -70,7 +82,24 @@ struct RenderResponse {
 
     std::vector<LocatedProblem> problems;
     std::size_t problems_left_out = 0;
-    std::string error;  // for operators, not for clients
+    std::string error;   // for operators, not for clients
+    std::string detail;  // of the failure, for clients
+
+    std::optional<Pricing::Quote> quote;  // of what was to be rendered; not for pictures that were there
+    double retry_after_s = 0;             // with too_late and budget_spent: when it is worth trying again
+    std::optional<ClientBudgets::State> budget;  // where clients have one
+    std::string partial;  // not empty: what the picture is instead of what was asked for
+};
+
+// What a request would take, told without rendering it.
+struct RenderEstimate {
+    RenderResponse refusal;  // its failure is none when there is an estimate
+    std::string key;
+    std::optional<Scene> scene;
+    Pricing::Quote quote;
+    bool cached = false;
+    double wait_ms = 0;   // for those before it
+    bool in_time = true;  // it would be taken, and seldom be late
 };
 
 // Where a valid scene goes.
@@ -107,6 +136,9 @@ public:
     RenderService& operator=(const RenderService&) = delete;
 
     RenderResponse render(const RenderRequest& request);
+    RenderEstimate estimate(const RenderRequest& request);
+    // The same for a scene that has passed validation; the request's text says nothing then.
+    RenderResponse render_scene(const RenderRequest& request, Scene scene);
 
     struct CacheFigures {
         AnswerCache::Figures kept;
@@ -118,6 +150,8 @@ public:
     void stop_all() { stopping_ = true; }
 
     RenderWorker& worker() { return worker_; }
+    Metrics& metrics();
+    const ClientBudgets& budgets() const;
     const SceneLimits& limits() const { return limits_; }
     const UnsupportedFeatures& unsupported() const { return unsupported_; }
 
@@ -129,7 +163,14 @@ private:
     // The render of this scene that is under way; null when there is none.
     std::shared_ptr<Flight> join(const std::string& key);
     std::shared_ptr<Flight> join_locked(const std::string& key);
-    std::shared_ptr<Flight> begin(const std::string& key, std::shared_ptr<const Scene> scene, RenderResponse& response);
+    std::shared_ptr<Flight> begin(const RenderRequest& request, const std::string& key, std::shared_ptr<const Scene> scene,
+                                  RenderResponse& response);
+    // From the cache, from another request, or rendered.
+    RenderResponse deliver(const RenderRequest& request, const std::string& text_key, std::string key, CheckedScene checked);
+    RenderResponse render_in_time(const RenderRequest& request);
+    // Whether it will be done in time; else the response says why not.
+    bool admit(const RenderRequest& request, const Pricing::Quote& quote, RenderResponse& response);
+    Pricing::Quote price(const std::string& key, const Scene& scene);
     void wait_for(const RenderRequest& request, const std::string& key, Flight& flight, RenderResponse& response);
     void finish(const std::string& key, Flight& flight, RenderOutcome outcome);
     void leave(const std::string& key, Flight& flight);
@@ -143,6 +184,9 @@ private:
     AnswerCache cache_;
     std::string table_id_;  // of the tone map "tony"
     TextMemo lethal_;  // keys of scenes that have cost two renderers
+    // Kept by renders that nobody waits for any more.
+    struct Books;
+    std::shared_ptr<Books> books_;
     std::atomic<bool> stopping_{false};
     std::mutex flights_mutex_;
     std::unordered_map<std::string, std::shared_ptr<Flight>> flights_;  // by the scene's key

@@ -16,6 +16,8 @@ constexpr std::chrono::milliseconds kLookUp{250};
 constexpr std::chrono::milliseconds kFirstPause{500}, kLongestPause{30'000};
 // A render that has cost so many backends is not tried again.
 constexpr int kMostLosses = 2;
+// More clients than this are not told apart: the books are closed and begun anew.
+constexpr std::size_t kMostClients = 10'000;
 
 double ms_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -49,9 +51,11 @@ RenderWorker::Status RenderWorker::status_locked() const {
     status.workers = slots_.size();
     status.capacity = capacity_;
     status.waiting = queue_.size();
+    status.backlog_ms = backlog_locked();
     // The best that there is; but before all have started, one that is ready would have to do the work of all.
     const Slot* best = nullptr;
     for (const auto& slot : slots_) {
+        status.ever_ready = status.ever_ready || slot->was_ready;
         status.ready_workers += slot->state == State::ready ? 1 : 0;
         const auto rank = [](State state) {
             return state == State::ready ? 0 : state == State::starting ? 1 : state == State::failing ? 2 : 3;
@@ -86,27 +90,53 @@ RenderWorker::Ticket RenderWorker::submit(std::shared_ptr<const Scene> scene) {
     Ticket ticket;
     auto promise = std::make_shared<std::promise<RenderOutcome>>();
     ticket.outcome = promise->get_future();
-    ticket.refusal = submit(std::move(scene), [promise](RenderOutcome outcome) { promise->set_value(std::move(outcome)); });
+    ticket.refusal = submit({std::move(scene), [promise](RenderOutcome outcome) { promise->set_value(std::move(outcome)); }});
     return ticket;
 }
 
-std::optional<RenderWorker::Refusal> RenderWorker::submit(std::shared_ptr<const Scene> scene, Done done, StopFlag stop) {
+double RenderWorker::expected_locked(const RenderOrder& order) const {
+    return order.expected_ms > 0 ? order.expected_ms : std::max(counts_.render_ms, 1.0);
+}
+
+std::optional<RenderWorker::Refusal> RenderWorker::submit(RenderOrder order) {
     {
         const std::lock_guard lock(mutex_);
         if (const auto refusal = refusal_locked()) return refusal;
-        queue_.push_back({std::move(scene), std::move(done), std::move(stop), Clock::now()});
+        // Who had more before an idle moment has it no longer: nobody waited for it.
+        if (turns_.size() >= kMostClients || (queue_.empty() && counts_.running == 0)) turns_.clear();
+        double& next = turns_[order.client];
+        Job job;
+        job.turn = std::max(turn_, next);
+        next = job.turn + expected_locked(order);
+        job.order = std::move(order);
+        job.since = Clock::now();
+        queue_.push_back(std::move(job));
     }
     changed_.notify_all();
     return std::nullopt;
 }
 
+// What it took counts, not what was expected.
+void RenderWorker::settle_locked(const RenderOrder& order, double spent_ms) {
+    const auto found = turns_.find(order.client);
+    if (found == turns_.end()) return;
+    found->second += spent_ms - expected_locked(order);
+    if (found->second <= turn_) turns_.erase(found);  // as one who was never here
+}
+
+double RenderWorker::backlog_locked() const {
+    double ms = 0, ready = 0;
+    for (const Job& job : queue_) ms += expected_locked(job.order);
+    for (const auto& slot : slots_) {
+        ready += slot->state == State::ready ? 1 : 0;
+        if (slot->expected_ms > 0) ms += std::max(slot->expected_ms - ms_since(slot->since), 0.1 * slot->expected_ms);
+    }
+    return ms / std::max(ready, 1.0);
+}
+
 int RenderWorker::retry_after_s() const {
     const std::lock_guard lock(mutex_);
-    // One more than waits: the render that runs is on average half done, a whole one is the safe guess.
-    const Status status = status_locked();
-    const double at_once = double(std::max<std::size_t>(status.ready_workers, 1));
-    const double seconds = status.render_ms * double(queue_.size() + 1) / at_once / 1000;
-    return int(std::clamp(std::ceil(seconds), 1.0, 3600.0));
+    return int(std::clamp(std::ceil(backlog_locked() / 1000), 1.0, 3600.0));
 }
 
 RenderWorker::State RenderWorker::wait_until_started() const {
@@ -229,7 +259,10 @@ void RenderWorker::work(Slot& slot, Job job) {
     const Clock::time_point start = Clock::now();
     bool lost = false;
     try {
-        outcome.result = slot.backend->render(*job.scene, [&] { return job.stop && *job.stop; });
+        outcome.result = slot.backend->render(*job.order.scene, [&] {
+            if (job.order.slices) *job.order.slices = slot.backend->slices();
+            return job.order.stop && *job.order.stop;
+        });
     } catch (const RenderStopped&) {
         outcome.stopped = true;
     } catch (const BackendLost& error) {
@@ -248,7 +281,9 @@ void RenderWorker::work(Slot& slot, Job job) {
             {
                 const std::lock_guard lock(mutex_);
                 --counts_.running;
+                slot.expected_ms = 0;
                 job.since = Clock::now();
+                job.turn = -1;  // before all others
                 queue_.push_front(std::move(job));
             }
             changed_.notify_all();
@@ -261,16 +296,19 @@ void RenderWorker::work(Slot& slot, Job job) {
     const bool failed = !outcome.result && !outcome.stopped && !lost;
     if (failed && outcome.error.empty()) outcome.error = "exception without a text";
     if (failed) recover(slot);  // before the answer: who asks next finds the state that it left
+    outcome.render_ms = ms;
     {
         const std::lock_guard lock(mutex_);
         --counts_.running;
+        slot.expected_ms = 0;
+        settle_locked(job.order, ms);
         if (outcome.result) {
             // The weight of 1/8 forgets a burst of small scenes after some ten large ones.
             counts_.render_ms = counts_.rendered == 0 ? ms : counts_.render_ms + (ms - counts_.render_ms) / 8;
             ++counts_.rendered;
         }
     }
-    job.done(std::move(outcome));
+    job.order.done(std::move(outcome));
     if (lost) replace(slot);
 }
 
@@ -284,9 +322,13 @@ std::optional<RenderWorker::Job> RenderWorker::next_job(Slot& slot) {
     };
     changed_.wait_for(lock, std::max(kLookUp, slot.pause), [&] { return stopping_ || warming || mine(); });
     if (!mine()) return std::nullopt;
-    Job job = std::move(queue_.front());
-    queue_.pop_front();
+    const auto first = std::min_element(queue_.begin(), queue_.end(), [](const Job& a, const Job& b) { return a.turn < b.turn; });
+    Job job = std::move(*first);
+    queue_.erase(first);
+    turn_ = std::max(turn_, job.turn);
     job.wait_ms += ms_since(job.since);
+    slot.expected_ms = expected_locked(job.order);
+    slot.since = Clock::now();
     ++counts_.running;
     return job;
 }
@@ -306,15 +348,17 @@ void RenderWorker::run(Slot& slot) {
             const State state = state_of(slot);
             RenderOutcome outcome;
             outcome.wait_ms = job->wait_ms;
-            outcome.stopped = job->stop && *job->stop;
+            outcome.stopped = job->order.stop && *job->order.stop;
             outcome.not_ready = state == State::failing || state == State::broken;
             if (outcome.stopped || outcome.not_ready) {
                 if (outcome.not_ready) outcome.error = "the renderer is not ready: " + status().reason;
                 {
                     const std::lock_guard lock(mutex_);
                     --counts_.running;
+                    slot.expected_ms = 0;
+                    settle_locked(job->order, 0);
                 }
-                job->done(std::move(outcome));
+                job->order.done(std::move(outcome));
             } else {
                 work(slot, std::move(*job));
             }

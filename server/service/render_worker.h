@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <unordered_map>
 #include <vector>
 
 #include "server/service/engine.h"
@@ -30,10 +31,21 @@ struct RenderOutcome {
     bool stopped = false;    // nobody wanted it any more
     bool lethal = false;     // two backends were lost over it
     double wait_ms = 0;      // in the queue
+    double render_ms = 0;    // of the last try
 };
 
 // Shared by those who want a render and those who make it.
 using StopFlag = std::shared_ptr<std::atomic<bool>>;
+
+struct RenderOrder {
+    std::shared_ptr<const Scene> scene;  // has passed validation
+    // Called on a worker's thread, once, unless the order is refused. It must not take long.
+    std::function<void(RenderOutcome)> done{};
+    StopFlag stop{};          // once set, the render ends soon, or is not begun
+    std::string client{};     // of equal clients, each gets the same share of the renderers' time
+    double expected_ms = 0;   // 0: as long as renders took lately
+    std::shared_ptr<std::atomic<std::uint64_t>> slices{};  // told how many dispatches there were so far
+};
 
 class RenderWorker {
 public:
@@ -46,6 +58,7 @@ public:
     struct Status {
         State state = State::starting;
         std::string reason;  // a sentence unless ready
+        bool ever_ready = false;
         DeviceInfo device;   // empty while there is none
         std::size_t workers = 0;        // threads with a backend each
         std::size_t ready_workers = 0;  // of them, those that take work now
@@ -56,6 +69,7 @@ public:
         std::uint64_t replaced = 0;  // backends that were made after the first ones
         std::string last_loss;       // why, "" when there was none
         double render_ms = 0;        // moving average, 0 before the first render
+        double backlog_ms = 0;       // expected until all that waits or runs is rendered
     };
     enum class Refusal { queue_full, not_ready };
 
@@ -73,10 +87,7 @@ public:
     };
     // Never waits. The scene has passed validation.
     Ticket submit(std::shared_ptr<const Scene> scene);
-    // The same; `done` is called on a worker's thread, once, unless it is refused. It must not take long. Once `stop` is
-    // set, the render ends soon, or is not begun.
-    using Done = std::function<void(RenderOutcome)>;
-    std::optional<Refusal> submit(std::shared_ptr<const Scene> scene, Done done, StopFlag stop = nullptr);
+    std::optional<Refusal> submit(RenderOrder order);
 
     // Whether submit() would refuse now: asked before the work of parsing a scene.
     std::optional<Refusal> refusal() const;
@@ -91,10 +102,9 @@ public:
 
 private:
     struct Job {
-        std::shared_ptr<const Scene> scene;
-        Done done;
-        StopFlag stop;
+        RenderOrder order;
         std::chrono::steady_clock::time_point since;
+        double turn = 0;  // least first
         int losses = 0;
         double wait_ms = 0;
     };
@@ -106,6 +116,8 @@ private:
         std::unique_ptr<RenderBackend> backend;
         std::size_t warmed = 0;  // scenes of the warm-up
         double warm_up_ms = 0;
+        double expected_ms = 0;  // of the render under way; 0: none is
+        std::chrono::steady_clock::time_point since;
         std::chrono::milliseconds pause{0};  // before another one is made
     };
 
@@ -121,6 +133,9 @@ private:
     void set_state(Slot& slot, State state, std::string reason);
     State state_of(const Slot& slot) const;
     Status status_locked() const;
+    double backlog_locked() const;
+    double expected_locked(const RenderOrder& order) const;
+    void settle_locked(const RenderOrder& order, double spent_ms);
     std::optional<Refusal> refusal_locked() const;
 
     const BackendFactory factory_;
@@ -131,6 +146,9 @@ private:
     mutable std::mutex mutex_;
     mutable std::condition_variable changed_;
     std::deque<Job> queue_;
+    // Start-time fair queueing: a client's next turn comes after what it has had; one that was idle begins at the present turn.
+    double turn_ = 0;
+    std::unordered_map<std::string, double> turns_;  // of clients that had more than their share
     bool stopping_ = false;
     bool started_ = false;  // every slot has ended its start
     Status counts_;         // the members that count; the others are worked out

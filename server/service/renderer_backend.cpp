@@ -9,12 +9,20 @@ class RendererBackend final : public RenderBackend {
 public:
     explicit RendererBackend(const RendererOptions& options) : renderer_(options) {}
 
-    RenderResult render(const Scene& scene, const StopCheck& stop) override { return renderer_.render(scene, stop); }
+    RenderResult render(const Scene& scene, const StopCheck& stop) override {
+        slices_ = 0;
+        return renderer_.render(scene, [&] {
+            ++slices_;
+            return stop && stop();
+        });
+    }
+    std::uint64_t slices() const override { return slices_; }
     std::string self_test() override { return renderer_.self_test(); }
     const DeviceInfo& device() const override { return renderer_.device(); }
 
 private:
     Renderer renderer_;
+    std::uint64_t slices_ = 0;
 };
 
 }  // namespace

@@ -70,6 +70,11 @@ Json to_json(const LocatedProblem& located) {
 Scene small_scene() {
     Scene scene;
     scene.canvas.width = scene.canvas.height = 16;
+    // Some views look at one of these.
+    Shape disc;
+    disc.geometry = Circle{{8, 8}, 2};
+    scene.shapes.push_back(disc);
+    scene.lights.push_back(PointLight{{4, 4}, Colour(1)});
     return scene;
 }
 

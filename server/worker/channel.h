@@ -20,7 +20,7 @@ struct Message {
         // from the worker
         device = 'd',   // it has one: DeviceInfo
         broken = 'b',   // it has none: a sentence
-        pulse = 'p',    // it is at work
+        pulse = 'p',    // it is at work; how many dispatches there were
         picture = 'P',  // RenderStats, size and kind of the pixels, its memory in use
         failed = 'f',   // a sentence
         stopped = 'S',

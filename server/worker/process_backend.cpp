@@ -2,6 +2,7 @@
 #include "server/worker/process_backend.h"
 
 #include <cerrno>
+#include <charconv>
 #include <csignal>
 #include <cstring>
 #include <optional>
@@ -175,6 +176,7 @@ public:
         return message.bytes;
     }
 
+    std::uint64_t slices() const override { return slices_; }
     const DeviceInfo& device() const override { return device_; }
 
     std::string worn_out() override {
@@ -207,7 +209,13 @@ private:
             const Channel::Result result = channel_->receive(message, kLookUp);
             if (result == Channel::Result::message && message.kind != Kind::pulse) return message;
             const Clock::time_point now = Clock::now();
-            if (result == Channel::Result::message) heard = now;
+            if (result == Channel::Result::message) {
+                heard = now;
+                // What is believed of it: a number, or none.
+                const char* end = message.bytes.data() + message.bytes.size();
+                std::uint64_t slices = 0;
+                if (std::from_chars(message.bytes.data(), end, slices).ptr == end) slices_ = slices;
+            }
             if (result == Channel::Result::closed) {
                 child_->wait(milliseconds(200));  // so that it can be said how it ended
                 throw lost("closed its connection");
@@ -233,6 +241,7 @@ private:
     DeviceInfo device_;
     std::size_t memory_bytes_ = 0;
     std::uint64_t renders_ = 0;
+    std::uint64_t slices_ = 0;
 };
 
 }  // namespace

@@ -35,9 +35,10 @@ public:
     explicit Listener(Channel& channel) : channel_(channel) {}
 
     bool operator()() {
+        ++slices_;
         const Clock::time_point now = Clock::now();
         if (now - spoken_ >= kPulse) {
-            channel_.send(Kind::pulse);
+            channel_.send(Kind::pulse, std::to_string(slices_));
             spoken_ = now;
         }
         if (now - heard_ >= kListen) {
@@ -53,6 +54,7 @@ private:
     Channel& channel_;
     Clock::time_point spoken_ = Clock::now(), heard_ = spoken_;
     bool stop_ = false;
+    std::uint64_t slices_ = 0;
 };
 
 void render(RenderBackend& backend, const std::string& bytes, Channel& channel, const SharedMemory& memory) {

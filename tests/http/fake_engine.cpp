@@ -60,6 +60,10 @@ void FakeControl::on_render(const StopCheck& stop) {
         throw RenderStopped();
     }
 }
+void FakeControl::count_stopped() {
+    const std::lock_guard lock(mutex_);
+    ++stopped_;
+}
 int FakeControl::stopped() const {
     const std::lock_guard lock(mutex_);
     return stopped_;
@@ -82,14 +86,20 @@ public:
     }
 
     RenderResult render(const Scene& scene, const StopCheck& stop) override {
+        slices_ = 0;
         control_->on_render(stop);
         const double red = scene.sky.radiance.x;
         if (red == 13) throw DeviceError(kThrownSecret);
         if (red == 14) std::raise(SIGSEGV);
         while (red == 15) std::this_thread::sleep_for(std::chrono::seconds(1));
-        for (int i = 0; red >= 100 && i < 2 * (red - 100); ++i) {
+        const double steps = 2 * (red - 100) * (scene.render.quality == Quality::draft ? 0.1 : 1);
+        for (int i = 0; red >= 100 && i < steps; ++i) {
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
-            if (stop && stop()) throw RenderStopped();
+            ++slices_;
+            if (stop && stop()) {
+                control_->count_stopped();
+                throw RenderStopped();
+            }
         }
         RenderResult result;
         const int width = scene.canvas.width, height = scene.canvas.height;
@@ -113,12 +123,14 @@ public:
         return result;
     }
 
+    std::uint64_t slices() const override { return slices_; }
     std::string self_test() override { return control_->self_test(); }
     const DeviceInfo& device() const override { return device_; }
 
 private:
     std::shared_ptr<FakeControl> control_;
     DeviceInfo device_;
+    std::uint64_t slices_ = 0;
 };
 
 }  // namespace

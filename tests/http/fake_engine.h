@@ -29,6 +29,7 @@ public:
     // For the backend.
     void on_start();
     void on_render(const StopCheck& stop);
+    void count_stopped();
     std::string self_test() const;
 
 private:
@@ -40,7 +41,7 @@ private:
 };
 
 // The sky's red says what the render does: 13 throws; 14 ends the process by a signal; 15 hangs and hears nothing; 100 + n takes
-// n hundredths of a second. A tone map other than "none" and a format that
+// n hundredths of a second, of quality "draft" a tenth of that. A tone map other than "none" and a format that
 // is neither png nor pfm are not supported. The picture is a ramp of the scene's size.
 Engine fake_engine(std::shared_ptr<FakeControl> control);
 

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
     constexpr AddCommand kCommands[] = {add_render_command, add_serve_command, add_validate_command,
                                         add_info_command, add_health_command, add_reference_command,
                                         add_compare_command, add_bench_command,
+                                        add_sign_url_command,
                                         add_worker_command, add_submit_command,
                                         add_worker_process_command};
     return run_cli(argc, argv, engine, kCommands);

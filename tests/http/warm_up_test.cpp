@@ -58,10 +58,10 @@ TEST(WarmUp, ARequestThatCannotWaitGoesFirst) {
     RenderWorker worker = worker_with(engine, log, warm_up_scenes(WarmUp::common));
     control->wait_for_begun(1);
     std::promise<int> begun_then;
-    ASSERT_FALSE(worker.submit(tiny(), [&](const RenderOutcome& outcome) {
+    ASSERT_FALSE(worker.submit({.scene = tiny(), .done = [&](const RenderOutcome& outcome) {
         EXPECT_TRUE(outcome.result);
         begun_then.set_value(control->begun());
-    }));
+    }}));
     control->open_gate();
     EXPECT_EQ(begun_then.get_future().get(), 2) << "after one scene of the warm-up";
     EXPECT_EQ(worker.wait_until_started(), RenderWorker::State::ready);

@@ -140,9 +140,9 @@ TEST(Floor, TheTableIsTheIntegral) {
             double mean[3] = {}, lean[3] = {};
             for (int i = 0; i < up; ++i) {
                 for (int k = 0; k < around; ++k) {
-                    const double s = (i + 0.5) / up, c = std::sqrt(1 - s * s), w = (k + 0.5) * 2 * kPi / around;
+                    const double e = (i + 0.5) * kPi / 2 / up, s = std::sin(e), c = std::cos(e), w = (k + 0.5) * 2 * kPi / around;
                     const ResponseTerms f = response.of_beam(normal, {c * std::cos(w), c * std::sin(w), s});
-                    const double share = 2 * kPi / up / around;
+                    const double share = 2 * kPi / around * kPi / 2 / up * c;
                     const double all[3] = {f.diffuse, f.facets, f.rim};
                     for (int n = 0; n < 3; ++n) {
                         mean[n] += all[n] * share;

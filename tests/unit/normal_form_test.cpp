@@ -69,6 +69,11 @@ TEST(NormalForm, EveryValueShows) {
     differs("/shapes/0/radius", "3");
     differs("/shapes/0/emission", "[1, 1, 1.0000001]");
     differs("/shapes/0/albedo", "0.1");
+    differs("/shapes/1/medium", "{\"extinction\": 0.1}");
+    differs("/shapes/1/medium", "{\"extinction\": 0.1, \"emission\": 1}");
+    differs("/shapes/1/medium", "{}");
+    differs("/shapes/1/medium", "{\"transmission\": 0.5}");
+    differs("/shapes/1/medium", "{\"transmission\": 0.5, \"depth\": 2}");
     for (const char* path : {"center/0", "radii/1", "rotation"}) differs(std::string("/shapes/1/") + path, "7");
     for (const char* path : {"center/0", "size/1", "rotation"}) differs(std::string("/shapes/2/") + path, "7");
     differs("/shapes/2/corner_radius", "0.25");

@@ -572,7 +572,11 @@ TEST(Unsupported, NamesEachKeyAndWhatItHolds) {
         EXPECT_NE(problems[0].message.find(named), std::string::npos) << problems[0].message;
     };
     expect_refused("/render/method", "'hybrid'", [](Scene& s) { s.render.method = "hybrid"; });
-    expect_refused("/render/view", "'probes'", [](Scene& s) { s.render.view = "probes"; });
+    expect_refused("/render/view", "'probes'", [](Scene& s) {
+        s.render.view = "probes";
+        s.render.method = "exact";
+    });
+    expect_refused("/render/view", "light4", [](Scene& s) { s.render.view = "light4"; });
     expect_refused("/output/tonemap", "'tony'", [](Scene& s) { s.output.tonemap = "tony"; });
 }
 

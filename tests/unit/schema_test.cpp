@@ -68,6 +68,8 @@ std::vector<Object> objects() {
          R"({"version": 1, "canvas": {"width": 1, "height": 1, "floor": {"albedo": {}}}})",
          "/canvas/floor/albedo"},
     };
+    list.push_back({"/$defs/medium", kMediumKeys, with_shape(R"({"type": "circle", "center": [0, 0], "radius": 1, "medium": {}})"),
+                    "/shapes/0/medium"});
     const std::pair<std::string, std::span<const std::string_view>> shapes[] = {
         {"circle", kCircleKeys}, {"ellipse", kEllipseKeys},   {"rect", kRectKeys},
         {"line", kLineKeys},     {"polyline", kPolylineKeys}, {"polygon", kPolygonKeys},

@@ -551,7 +551,7 @@ TEST(Validate, EveryKnownWordIsGood) {
         EXPECT_THAT(brief(validate(scene)), IsEmpty()) << word;
     }
     for (const char* word :
-         {"final", "distance", "cascade0", "cascade12", "probes", "steps", "normals"}) {
+         {"final", "distance", "cascade0", "cascade12", "probes", "steps", "normals", "skipped", "light3", "shape0", "sky", "error"}) {
         Scene scene = small_scene();
         scene.render.view = word;
         EXPECT_THAT(brief(validate(scene)), IsEmpty()) << word;

@@ -55,11 +55,11 @@ TEST(Wording, NearestWord) {
 
 TEST(Words, CascadeViewsHaveOneSpelling) {
     for (const char* good : {"final", "distance", "probes", "steps", "normals", "cascade0",
-                             "cascade9", "cascade10", "cascade15"}) {
+                             "cascade9", "cascade10", "cascade15", "light0", "light999", "shape12", "sky", "error", "skipped"}) {
         EXPECT_TRUE(is_known_view(good)) << good;
     }
     for (const char* bad : {"", "cascade", "cascade16", "cascade00", "cascade-1", "cascade1x",
-                            "cascade01", "cascade100", "Final"}) {
+                            "cascade01", "cascade100", "Final", "light", "light1000", "light01", "shape20000", "shape-1"}) {
         EXPECT_FALSE(is_known_view(bad)) << bad;
     }
 }
