@@ -17,10 +17,10 @@ Texture2D TexturePool::take(GLenum internal_format, glm::ivec2 size, Filter filt
 }
 
 void TexturePool::give(Texture2D texture) {
-    if (!texture || texture.bytes() > most_bytes_) return;
+    if (!texture || texture.bytes() < kLeastBytes || texture.bytes() > most_bytes_) return;
     bytes_ += texture.bytes();
     free_.push_back(std::move(texture));
-    while (bytes_ > most_bytes_) {
+    while (bytes_ > most_bytes_ || free_.size() > kMostTextures) {
         bytes_ -= free_.front().bytes();
         free_.erase(free_.begin());
     }

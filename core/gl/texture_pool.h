@@ -12,7 +12,7 @@ namespace penumbra::gl {
 
 class TexturePool {
 public:
-    // Keeps at most this many bytes; the longest unused go first.
+    // Keeps at most this many bytes and kMostTextures; the longest unused go first.
     explicit TexturePool(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
     // One that was given back with the same format, size and filter, contents as they were left; else a new one.
@@ -20,6 +20,12 @@ public:
     void give(Texture2D texture);
 
     std::size_t bytes() const { return bytes_; }
+    std::size_t count() const { return free_.size(); }
+
+    // A texture takes some kilobytes beside its texels, and each is looked at when one is taken.
+    static constexpr std::size_t kMostTextures = 128;
+    // What is smaller is made as quickly as it is found.
+    static constexpr std::size_t kLeastBytes = 1024;
 
 private:
     std::size_t most_bytes_;
