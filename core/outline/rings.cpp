@@ -94,6 +94,7 @@ std::optional<std::vector<Ring>> even_odd_of_nonzero(const std::vector<Ring>& ri
     const double extent = std::max(high.x - low.x, high.y - low.y);
     if (!(extent > 0)) return std::vector<Ring>{};
     const double scale = double(kGridExtent) / extent;
+    if (!std::isfinite(extent) || !std::isfinite(scale)) return rings;
     std::vector<GridEdge> edges;
     for (const Ring& ring : rings) {
         std::vector<GridNode> nodes;

@@ -60,7 +60,7 @@ Polygon OutlineReader::drawn(const Path& where, NodeId id, std::vector<Ring> rin
         points += ring.size();
     }
     // Too many for the limits are told by the validation; a scene that is refused anyway is not worth the work.
-    if (nonzero && points <= limits_.max_points_per_shape && points_ <= limits_.max_points) {
+    if (nonzero && points <= limits_.max_points_per_shape && !too_many_) {
         if (!reader_.problems().empty()) {
             return nothing(where, key);
         }
@@ -74,6 +74,7 @@ Polygon OutlineReader::drawn(const Path& where, NodeId id, std::vector<Ring> rin
     Polygon polygon = polygon_of(rings);
     polygon.key = key;
     points_ += polygon.points.size();
+    too_many_ = too_many_ || polygon.points.size() > limits_.max_points_per_shape || points_ > limits_.max_points;
     for (Point& point : polygon.points) {
         point = position + point * scale;
     }

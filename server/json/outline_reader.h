@@ -33,6 +33,7 @@ private:
     double tolerance_ = 0.05;  // world units
     CrossingWork work_;        // left for all outlines
     std::size_t points_ = 0;   // of those that were read
+    bool too_many_ = false;    // of these
 };
 
 }  // namespace penumbra

@@ -244,6 +244,13 @@ TEST(Winding, AreasAreExact) {
     EXPECT_TRUE(solved({{{1, 1}, {1, 1}}}, 100)->empty());
 }
 
+TEST(Winding, BeyondAnyGridNothingIsDone) {
+    for (const double side : {1e308, 1e-310}) {
+        const std::vector<Ring> ring{{{-side, -side}, {side, 0}, {0, side}}};
+        EXPECT_EQ(*solved(ring, 100), ring) << side;
+    }
+}
+
 // Of 16,384 points, as many as a path may have: what crossings cost until it is solved or refused.
 struct Cost {
     bool solved = false;
