@@ -48,6 +48,6 @@ USER 10001:10001
 EXPOSE 8080
 HEALTHCHECK --interval=30s --timeout=5s --start-period=30s --retries=3 \
     CMD ["penumbra", "health"]
-# One process without children that handles its signals: it needs no init in front.
+# It handles its signals and waits for the workers that it starts: it needs no init in front.
 ENTRYPOINT ["penumbra"]
 CMD ["serve"]

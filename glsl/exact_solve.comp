@@ -464,9 +464,8 @@ void solve_nodes(int tile_index, int first) {
 }
 
 void main() {
-    int index = int(gl_GlobalInvocationID.x);
+    int index = int(gl_GlobalInvocationID.x) + params.origin.y * params.extent.x;
     if (kNodes != 0) {
-        index += params.origin.y * params.extent.x;
         if (index >= params.jobs) return;
         solve_nodes(int(texelFetch(jobs, index).r), 4 * index);
         return;

@@ -48,8 +48,6 @@ void StorageBuffer::bind_texture(int unit) const {
     glBindTexture(GL_TEXTURE_BUFFER, id_);
 }
 
-void StorageBuffer::bind_indirect() const { glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer_); }
-
 void StorageBuffer::clear(std::size_t bytes) {
     const GLuint zero = 0;
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer_);

@@ -2,6 +2,7 @@
 // What the files of the method `exact` share.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +16,8 @@ inline constexpr int kLevels = 4;  // cells of 8, 4, 2 and 1 pixels
 
 // Iterations that the solver spends on one point in one dispatch at most (exact_solve.comp).
 inline constexpr std::uint64_t kMostWork = 30'000;
+// Iterations, by their bound, of the groups that one dispatch covers; and groups, however long: a device has some threads.
+inline constexpr std::uint64_t kSolverSlice = 500'000, kFewestGroups = 16;
 
 inline int divided_up(int a, int b) { return (a + b - 1) / b; }
 
@@ -47,8 +50,14 @@ struct ExactPass::Band {
     gl::Texture2D value, slope_x, slope_y, leaf, lights;
     glm::ivec2 coarse_tiles{0};
     std::array<LevelPoints, kLevels> levels{};
-    bool always_finishes = false;
+    std::uint64_t most_work = 0;  // iterations that a point may take in all
     glm::ivec2 area{0};  // px that its lists cover
+
+    // So many groups of the solver in rows, each short enough for a dispatch.
+    glm::ivec2 solver_rows(int groups) const {
+        const auto row = static_cast<int>(std::clamp<std::uint64_t>(kSolverSlice / std::clamp<std::uint64_t>(most_work, 1, kMostWork), kFewestGroups, 65535));
+        return {row * glsl::kExactSolveGroupX, divided_up(groups, row)};
+    }
 };
 
 }  // namespace penumbra

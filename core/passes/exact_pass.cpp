@@ -138,7 +138,7 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
         ratio = exact.coarse_tile / glsl::kExactTile;
     }
     const std::uint32_t list_work = make(band.params.tiles, glsl::kExactTile, ratio, false, heads_, entries_, lights_);
-    band.always_finishes = std::uint64_t(list_work) * static_cast<std::uint64_t>(exact.sectors) < kMostWork;
+    band.most_work = std::uint64_t(list_work) * static_cast<std::uint64_t>(exact.sectors);
     return work;
 }
 
@@ -162,15 +162,19 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
     band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_WRITE);
     field.distance.bind_texture(glsl::kExactDistanceUnit);
     points_.bind_texture(glsl::kExactPointsUnit);
+    // So many at a time that no dispatch is long: a render stops, and says that it lives, between two.
+    std::uint32_t groups = 0;
+    counters_.read(4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1), &groups, sizeof(groups));
+    params.extent = band.solver_rows(static_cast<int>(groups));
     run_solver(params, band, work, moment, [&](const glsl::ExactParams& p) {
-        program.dispatch_indirect(p, 4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1));
+        return program.dispatch(p, p.extent, static_cast<std::size_t>(p.extent.x));
     });
     return work;
 }
 
 // Dispatches until every point is done: one whose loops have spent their iterations goes on in the next.
 void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work, int moment,
-                           const std::function<void(const glsl::ExactParams&)>& dispatch) {
+                           const std::function<int(const glsl::ExactParams&)>& dispatch) {
     heads_.bind_texture(glsl::kExactHeadsUnit);
     entries_.bind_texture(glsl::kExactEntriesUnit);
     lights_.bind_texture(glsl::kExactLightsUnit);
@@ -182,11 +186,9 @@ void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work,
         elements_.bind_texture(glsl::kExactElementsUnit);
     }
     counters_.bind_storage(glsl::kExactCountersStorage);
-    counters_.bind_indirect();
     for (;;) {
-        dispatch(params);
-        ++work.dispatches;
-        if (band.always_finishes) break;
+        work.dispatches += dispatch(params);
+        if (band.most_work < kMostWork) break;
         std::uint32_t unfinished = 0;
         counters_.read(4 * glsl::kExactCountUnfinished, &unfinished, sizeof(unfinished));
         if (unfinished == 0) break;
