@@ -28,4 +28,12 @@ MethodChoice choose_method(const PackedOutline& outline, Quality quality) {
     return {"hrc", seen.str() + ": sampled sooner than solved"};
 }
 
+MethodChoice choose_split(const LightSplit& split, Quality quality, const MethodChoice& sampled) {
+    if (split.solved.empty() || split.share < least_solved_share() || split.cost > most_solved_cost_by_choice(quality)) return sampled;
+    std::ostringstream reason;
+    reason << sampled.reason << "; but of " << split.lamps << " lamps the strongest " << split.solved.size() << " send "
+           << std::floor(100 * split.share) << " % of the light and are solved";
+    return {"hybrid", reason.str()};
+}
+
 }  // namespace penumbra

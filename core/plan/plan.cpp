@@ -13,6 +13,7 @@
 #include "core/plan/pack.h"
 #include "core/plan/saving.h"
 #include "core/plan/skip.h"
+#include "core/plan/split_lights.h"
 #include "core/plan/sky.h"
 #include "core/scene/words.h"
 #include "glsl/exact.h"
@@ -146,6 +147,17 @@ void fit_hrc(Plan& plan, double peak, const DeviceLimits& limits) {
         throw DeviceError("The picture is too large for the method 'hrc' on this device: it needs " + std::to_string(bytes >> 20) +
                           " MiB. A lower quality or the method 'rc' needs less.");
     plan.gpu_bytes += bytes;
+}
+
+// hybrid: a few lamps are solved as by `exact`, the rest is sampled as by `hrc`.
+void plan_split(Plan& plan, const Scene& scene, const LightSplit& split, const DeviceLimits& limits) {
+    plan.solved_shapes = split.solved;
+    if (split.solved.empty()) return;
+    const Scene part = solved_part(scene, split.solved);
+    PackedOutline outline = pack_outline(part, 1.0, false, kMostPieces);
+    outline.mean_intervals = split.cost / std::max(double(outline.pieces), 1.0);
+    plan.exact = plan_exact(part, std::move(outline), plan.canvas, limits.software);
+    if (split.all() && brightest(scene.sky) <= 0 && saves(scene.render, Saving::sampling)) plan.hrc = {};
 }
 
 }  // namespace
@@ -320,6 +332,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         return plan;
     }
     PackedOutline outline;
+    LightSplit split;
     plan.needs.media = !scene.media.empty();
     plan.look = look_of(scene.render.view);
     plan.needs.steps = plan.look.at == LookAt::steps;
@@ -336,10 +349,15 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         if (plan.floor.relief && !(outline.fits && not_exact.empty()))
             throw DeviceError("The scene is too dense for a floor with relief, which only the method 'exact' has: " +
                               (not_exact.empty() ? "its outline has more than " + std::to_string(most_surveyed_pieces()) + " pieces." : not_exact));
-        const MethodChoice choice = !not_exact.empty()            ? MethodChoice{"hrc", not_exact}
+        MethodChoice choice = !not_exact.empty()            ? MethodChoice{"hrc", not_exact}
                                     : reflecting && outline.fits ? MethodChoice{"exact", "surfaces reflect"}
                                     : plan.floor.relief          ? MethodChoice{"exact", "the floor has relief"}
                                                                  : choose_method(outline, scene.render.quality);
+        if (choice.method == "hrc" && outline.fits && not_exact.empty() && hrc_fits(scene, plan.canvas, limits)) {
+            const Quality quality = scene.render.quality;
+            split = split_lights(scene, least_solved_share(), most_solved_cost_by_choice(quality), most_surveyed_pieces());
+            choice = choose_split(split, quality, choice);
+        }
         plan.method = choice.method;
         plan.method_reason = choice.reason;
         if (plan.method == "hrc" && !hrc_fits(scene, plan.canvas, limits)) {
@@ -352,10 +370,17 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
             throw DeviceError("The method 'exact' cannot take this scene: its outline has more than " +
                               std::to_string(kMostPieces) + " pieces.");
     }
+    else if (plan.method == "hybrid") {
+        split = split_lights(scene, 0, most_solved_cost(scene.render.quality), kMostPieces);
+        if (split.solved.empty() && !pack_outline(scene, 1.0, false, kMostPieces).fits)
+            throw DeviceError("The method 'hybrid' cannot take this scene: its outline has more than " +
+                              std::to_string(kMostPieces) + " pieces.");
+    }
     const bool brute_force = plan.method == "reference";
     const bool exact = plan.method == "exact";
     plan.bilinear_fix = plan.method == "rc_fix";
-    const bool holographic = plan.method == "hrc";
+    const bool hybrid = plan.method == "hybrid";
+    const bool holographic = plan.method == "hrc" || hybrid;
 
     double peak = brightest(scene.sky);
     bool has_bitmaps = false;
@@ -407,6 +432,11 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         plan.hrc = hrc_of(scene, plan.canvas);
     else
         plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
+    if (hybrid) {
+        const double steps = double(plan.hrc.quadrants.front().levels.size());
+        plan_split(plan, scene, split, limits);
+        if (!plan.hrc.active()) leave_out("ray pieces", "all lamps are solved", pixels * steps);
+    }
     if (reflecting && !exact) {
         // What surfaces shine with is solved, whatever the method; only what meets them is sampled.
         outline = pack_outline(scene, 1.0, false, kMostPieces, true);
@@ -490,6 +520,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     if (plan.exact.moments) plan.gpu_bytes += 2 * texel * area(plan.lit.size);
     if (plan.floor.used) plan.gpu_bytes += 16 * area(plan.lit.size) * (floor.normals ? 3 : floor.image ? 2 : 1);
     if (plan.hrc.active()) fit_hrc(plan, peak, limits);
+    if (plan.hrc.active() && plan.exact.used) plan.gpu_bytes += 16 * area(plan.canvas);  // their sum
     for (glm::vec4& light : plan.exact.outline.lights_of)
         light = glm::vec4(glm::vec3(light) / static_cast<float>(plan.radiance_scale), light.a);
     for (std::size_t i = 0; i < plan.exact.outline.surfaces.materials.size(); ++i)
