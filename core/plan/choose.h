@@ -23,8 +23,9 @@ double exact_cost(const PackedOutline& outline);
 // `outline` with its survey. For `high` a solved picture may cost more, since sampled ones do.
 MethodChoice choose_method(const PackedOutline& outline, Quality quality = Quality::standard);
 
-// Where the strongest lamps of a scene that is sampled are solved soon: the choice of `hybrid` instead of `sampled`.
-MethodChoice choose_split(const LightSplit& split, Quality quality, const MethodChoice& sampled);
+// Where the brightest lamps of a scene that is sampled are solved sooner than all: the choice of `hybrid` instead of `sampled`.
+// `outline` with its survey.
+MethodChoice choose_split(const LightSplit& split, const PackedOutline& outline, Quality quality, const MethodChoice& sampled);
 
 // The most pieces of outline for which `auto` looks closer.
 std::size_t most_surveyed_pieces();

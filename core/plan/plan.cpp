@@ -354,9 +354,8 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
                                     : plan.floor.relief          ? MethodChoice{"exact", "the floor has relief"}
                                                                  : choose_method(outline, scene.render.quality);
         if (choice.method == "hrc" && outline.fits && not_exact.empty() && hrc_fits(scene, plan.canvas, limits)) {
-            const Quality quality = scene.render.quality;
-            split = split_lights(scene, least_solved_share(), most_solved_cost_by_choice(quality), most_surveyed_pieces());
-            choice = choose_split(split, quality, choice);
+            split = split_lights(scene, least_solved_share(), 0, most_surveyed_pieces());
+            choice = choose_split(split, outline, scene.render.quality, choice);
         }
         plan.method = choice.method;
         plan.method_reason = choice.reason;
@@ -375,6 +374,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         if (split.solved.empty() && !pack_outline(scene, 1.0, false, kMostPieces).fits)
             throw DeviceError("The method 'hybrid' cannot take this scene: its outline has more than " +
                               std::to_string(kMostPieces) + " pieces.");
+        plan.method_reason += "; the brightest " + std::to_string(split.solved.size()) + " of " + std::to_string(split.lamps) + " lamps are solved";
     }
     const bool brute_force = plan.method == "reference";
     const bool exact = plan.method == "exact";

@@ -16,7 +16,12 @@ using reference::Piece;
 
 struct Lamp {
     int shape = 0;
-    double power = 0;
+    double power = 0;  // radiance times length
+    reference::Box box;
+    // About its radiance: what sampling errs by does not depend on a lamp's size, since a ray meets it or does not.
+    double weight(double least_extent) const {
+        return power / std::max({box.high.x - box.low.x, box.high.y - box.low.y, least_extent});
+    }
 };
 
 // In world units; of an arc, by chords.
@@ -38,21 +43,24 @@ LightSplit split_lights(const Scene& scene, double least_share, double most_cost
     if (!boundary.problems().empty()) return split;
     const auto shape_of = [&](const Piece& piece) { return boundary.bodies()[static_cast<std::size_t>(piece.body)].shape; };
     std::vector<Lamp> lamps(scene.shapes.size());
-    double all = 0;
     for (const Piece& piece : boundary.pieces()) {
         const reference::Material& material = boundary.material_of(piece);
         if (!material.shines()) continue;
-        const double power = (material.emission.r + material.emission.g + material.emission.b) / 3 * length_of(piece);
-        const int shape = shape_of(piece);
-        lamps[static_cast<std::size_t>(shape)].shape = shape;
-        lamps[static_cast<std::size_t>(shape)].power += power;
-        all += power;
+        Lamp& lamp = lamps[static_cast<std::size_t>(shape_of(piece))];
+        lamp.shape = shape_of(piece);
+        lamp.power += (material.emission.r + material.emission.g + material.emission.b) / 3 * length_of(piece);
+        const reference::Box box = piece.box();
+        lamp.box.add(box.low);
+        lamp.box.add(box.high);
     }
     std::erase_if(lamps, [](const Lamp& lamp) { return !(lamp.power > 0); });
     split.lamps = lamps.size();
     if (lamps.empty()) return split;
+    const auto weight = [&](const Lamp& lamp) { return lamp.weight(boundary.tolerance()); };
     // Strongest first; of equals, those drawn first, so that the same scene is always split the same way.
-    std::stable_sort(lamps.begin(), lamps.end(), [](const Lamp& a, const Lamp& b) { return a.power > b.power; });
+    std::stable_sort(lamps.begin(), lamps.end(), [&](const Lamp& a, const Lamp& b) { return weight(a) > weight(b); });
+    double all = 0;
+    for (const Lamp& lamp : lamps) all += weight(lamp);
     const auto cost_of = [&](std::size_t count) {
         std::vector<char> solved(scene.shapes.size()), shining;
         for (std::size_t i = 0; i < count; ++i) solved[static_cast<std::size_t>(lamps[i].shape)] = 1;
@@ -61,7 +69,7 @@ LightSplit split_lights(const Scene& scene, double least_share, double most_cost
         return survey_intervals(scene, boundary, &shining) * double(boundary.pieces().size());
     };
     std::size_t count = 1;
-    for (double power = lamps[0].power; count < lamps.size() && power < least_share * all; ++count) power += lamps[count].power;
+    for (double solved = weight(lamps[0]); count < lamps.size() && solved < least_share * all; ++count) solved += weight(lamps[count]);
     double cost = cost_of(count);
     // Twice as many, as long as they can be had; half as many more at the last.
     for (std::size_t more = count; count < lamps.size() && cost <= most_cost; more = (more + 1) / 2) {
@@ -78,16 +86,14 @@ LightSplit split_lights(const Scene& scene, double least_share, double most_cost
     split.cost = cost;
     for (std::size_t i = 0; i < count; ++i) {
         split.solved.push_back(lamps[i].shape);
-        split.share += lamps[i].power / all;
+        split.share += weight(lamps[i]) / all;
     }
     return split;
 }
 
-double most_solved_cost(Quality quality) { return quality == Quality::high ? 100'000 : 25'000; }
+double most_solved_cost(Quality quality) { return quality == Quality::high ? 100'000 : 50'000; }
 
-double most_solved_cost_by_choice(Quality quality) { return quality == Quality::high ? 32'000 : 8'000; }
-
-double least_solved_share() { return 0.6; }
+double least_solved_share() { return 0.8; }
 
 Scene solved_part(const Scene& scene, const std::vector<int>& solved) {
     Scene part = scene;
