@@ -475,7 +475,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         const double levels = static_cast<double>(leave_out_far(plan.cascades, extent_of_shapes(scene, dark_sky, reflecting), plan.grid.diagonal_px));
         if (levels > 0) leave_out("cascades", dark_sky ? "no light is as far away" : "no shape is as far away", 4.0 * pixels * levels / (settings.spacing_px * settings.spacing_px));
     }
-    if (exact && !skip(Saving::cells)) plan.exact.settings.largest_cell = 1;
+    if ((exact || hybrid) && !skip(Saving::cells)) plan.exact.settings.largest_cell = 1;
     const bool resolved = settings.spacing_px == 1.0 && settings.base_tiles == 1;
     plan.resolve = !plan.cascades.empty() && !(resolved && skip(Saving::resolve));
     if (!plan.resolve && !plan.cascades.empty())
