@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <glm/common.hpp>
+
 #include "core/plan/plan.h"
 
 namespace penumbra {
