@@ -53,6 +53,9 @@ namespace {
 // Two renders of 4096 x 4096.
 constexpr std::size_t kPoolBytes = std::size_t(1) << 30;
 
+// Threads of the solver that share four points.
+constexpr int kSolverLanesOfGpu = 8;
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -69,7 +72,7 @@ struct Renderer::Impl {
           hrc(options.shader_dir),
           summing(options.shader_dir),
           reference(options.shader_dir),
-          exact(options.shader_dir),
+          exact(options.shader_dir, context.info().software ? 1 : kSolverLanesOfGpu),
           delta(options.shader_dir),
           floor(options.shader_dir),
           compose(options.shader_dir) {

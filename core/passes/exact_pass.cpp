@@ -40,8 +40,9 @@ glm::vec4 most_light(const PackedOutline& outline, const Sky& sky, double radian
 
 }  // namespace
 
-ExactPass::ExactPass(const std::string& shader_dir)
+ExactPass::ExactPass(const std::string& shader_dir, int lanes)
     : shader_dir_(shader_dir),
+      lanes_(lanes),
       split_("exact_split.comp", sizeof(glsl::ExactParams), shader_dir),
       gather_("exact_jobs.comp", sizeof(glsl::ExactParams), shader_dir),
       mean_("exact_mean.comp", sizeof(glsl::ExactParams), shader_dir),
@@ -72,7 +73,8 @@ gl::ComputeProgram& ExactPass::solver_for(const Needs& needs) {
                                            {"kSlopes", needs.slopes ? 1 : 0},
                                            {"kSurfaces", needs.surfaces ? 1 : 0},
                                            {"kNodes", needs.nodes ? 1 : 0},
-                                           {"kMoment", needs.moment}};
+                                           {"kMoment", needs.moment},
+                                           {"kExactLanes", lanes_}};
     return solvers_.emplace(needs, gl::ComputeProgram("exact_solve.comp", sizeof(glsl::ExactParams), shader_dir_, constants)).first->second;
 }
 
@@ -138,7 +140,7 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
         ratio = exact.coarse_tile / glsl::kExactTile;
     }
     const std::uint32_t list_work = make(band.params.tiles, glsl::kExactTile, ratio, false, heads_, entries_, lights_);
-    band.always_finishes = std::uint64_t(list_work) * static_cast<std::uint64_t>(exact.sectors) < kMostWork;
+    band.always_finishes = lanes_ > 1 || std::uint64_t(list_work) * static_cast<std::uint64_t>(exact.sectors) < kMostWork;
     return work;
 }
 

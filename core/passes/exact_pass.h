@@ -30,7 +30,8 @@ public:
 // Keeps its buffers from frame to frame.
 class ExactPass {
 public:
-    explicit ExactPass(const std::string& shader_dir);
+    // `lanes`: threads that share the sectors of four points; more keep a GPU busy, and llvmpipe has no threads to spare.
+    explicit ExactPass(const std::string& shader_dir, int lanes = 1);
 
     // `record(name, extent, run)` times each step: lists, points, cells, fill.
     using Record = std::function<void(const char* name, glm::ivec2 extent, const std::function<PassWork()>& run)>;
@@ -72,6 +73,7 @@ private:
     gl::ComputeProgram& solver_for(const Needs& needs);
 
     std::string shader_dir_;
+    int lanes_;
     std::map<std::pair<bool, bool>, gl::ComputeProgram> lists_;
     std::map<Needs, gl::ComputeProgram> solvers_;
     gl::ComputeProgram split_;
