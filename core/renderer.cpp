@@ -54,7 +54,7 @@ namespace {
 constexpr std::size_t kPoolBytes = std::size_t(1) << 30;
 
 // Threads of the solver that share four points.
-constexpr int kSolverLanesOfGpu = 8;
+constexpr int kSolverLanesOfGpu = 4;
 
 }  // namespace
 
