@@ -72,7 +72,7 @@ struct Renderer::Impl {
           hrc(options.shader_dir),
           summing(options.shader_dir),
           reference(options.shader_dir),
-          exact(options.shader_dir, context.info().software ? 1 : kSolverLanesOfGpu),
+          exact(options.shader_dir, options.solver_lanes > 0 ? options.solver_lanes : context.info().software ? 1 : kSolverLanesOfGpu),
           delta(options.shader_dir),
           floor(options.shader_dir),
           compose(options.shader_dir) {
