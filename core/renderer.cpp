@@ -86,6 +86,7 @@ struct Renderer::Impl {
         info.max_group_invocations = gl_info.max_group_invocations;
         info.max_loop_iterations = gl::measure_loop_limit(options.shader_dir);
         limits = device_limits(info.max_texture_side, info.max_texture_buffer_texels, info.max_loop_iterations, gl_info.software);
+        if (!gl_info.software && info.max_loop_iterations == 0) exact.allow_long_loops();
         // About 10 ms a dispatch on two cores of llvmpipe; a GPU takes a hundred times that.
         const std::size_t factor = gl_info.software ? 1 : 128;
         settings = {factor * 6'000'000, factor * 300'000, factor * 1'000'000, &textures};

@@ -31,6 +31,8 @@ public:
 class ExactPass {
 public:
     explicit ExactPass(const std::string& shader_dir);
+    // On a device that ends no long loops: a point that has much to see is done in one dispatch, or a few.
+    void allow_long_loops();
 
     // `record(name, extent, run)` times each step: lists, points, cells, fill.
     using Record = std::function<void(const char* name, glm::ivec2 extent, const std::function<PassWork()>& run)>;
@@ -72,6 +74,7 @@ private:
     gl::ComputeProgram& solver_for(const Needs& needs);
 
     std::string shader_dir_;
+    bool long_loops_ = false;
     std::map<std::pair<bool, bool>, gl::ComputeProgram> lists_;
     std::map<Needs, gl::ComputeProgram> solvers_;
     gl::ComputeProgram split_;
