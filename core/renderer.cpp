@@ -72,7 +72,7 @@ struct Renderer::Impl {
           hrc(options.shader_dir),
           summing(options.shader_dir),
           reference(options.shader_dir),
-          exact(options.shader_dir, options.solver_lanes > 0 ? options.solver_lanes : context.info().software ? 1 : kSolverLanesOfGpu),
+          exact(options.shader_dir),
           delta(options.shader_dir),
           floor(options.shader_dir),
           compose(options.shader_dir) {
@@ -89,6 +89,9 @@ struct Renderer::Impl {
         info.max_group_invocations = gl_info.max_group_invocations;
         info.max_loop_iterations = gl::measure_loop_limit(options.shader_dir);
         limits = device_limits(info.max_texture_side, info.max_texture_buffer_texels, info.max_loop_iterations, gl_info.software);
+        const bool long_loops = !gl_info.software && info.max_loop_iterations == 0;
+        if (long_loops) exact.allow_long_loops();
+        exact.share_sectors(options.solver_lanes > 0 ? options.solver_lanes : long_loops ? kSolverLanesOfGpu : 1);
         // About 10 ms a dispatch on two cores of llvmpipe; a GPU takes a hundred times that.
         const std::size_t factor = gl_info.software ? 1 : 128;
         settings = {factor * 6'000'000, factor * 300'000, factor * 1'000'000, &textures};

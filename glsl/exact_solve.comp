@@ -36,8 +36,8 @@ const int kMoment = 0;    // what radiance is weighted by: 0: nothing; 1, 2: the
 
 const float kLookAhead = 1e-4;  // pieces that start at one corner are told apart a little further on
 const float kTwoPi = 6.283185307179586;
-// Loop iterations of one dispatch, under the 65,535 after which Mesa 22 ends all loops of a vector of eight. A point that
-// has spent them goes on in the next.
+// Loop iterations of one dispatch, under the 65,535 after which Mesa 22 ends all loops of a vector of eight; more where the driver ends
+// none. A point that has spent them goes on in the next.
 const int kBudget = 30000;
 const float kNone = -1.0;       // nothing in this direction: the sky
 const float kUnknown = -2.0;

@@ -40,9 +40,8 @@ glm::vec4 most_light(const PackedOutline& outline, const Sky& sky, double radian
 
 }  // namespace
 
-ExactPass::ExactPass(const std::string& shader_dir, int lanes)
+ExactPass::ExactPass(const std::string& shader_dir)
     : shader_dir_(shader_dir),
-      lanes_(lanes),
       split_("exact_split.comp", sizeof(glsl::ExactParams), shader_dir),
       gather_("exact_jobs.comp", sizeof(glsl::ExactParams), shader_dir),
       mean_("exact_mean.comp", sizeof(glsl::ExactParams), shader_dir),
@@ -50,6 +49,7 @@ ExactPass::ExactPass(const std::string& shader_dir, int lanes)
       reflect_("exact_reflect.comp", sizeof(glsl::ExactParams), shader_dir),
       counters_(GL_R32UI, 4 * glsl::kExactCountTiles),
       change_(GL_R32UI, 8) {}
+
 
 std::size_t ExactPass::bytes() const {
     return coarse_heads_.bytes() + coarse_entries_.bytes() + coarse_lights_.bytes() + heads_.bytes() + entries_.bytes() +
@@ -74,7 +74,8 @@ gl::ComputeProgram& ExactPass::solver_for(const Needs& needs) {
                                            {"kSurfaces", needs.surfaces ? 1 : 0},
                                            {"kNodes", needs.nodes ? 1 : 0},
                                            {"kMoment", needs.moment},
-                                           {"kExactLanes", lanes_}};
+                                           {"kExactLanes", lanes_},
+                                           {"kBudget", static_cast<int>(long_loops_ ? kMostWorkOfLongLoops : kMostWork)}};
     return solvers_.emplace(needs, gl::ComputeProgram("exact_solve.comp", sizeof(glsl::ExactParams), shader_dir_, constants)).first->second;
 }
 
@@ -140,7 +141,10 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
         ratio = exact.coarse_tile / glsl::kExactTile;
     }
     const std::uint32_t list_work = make(band.params.tiles, glsl::kExactTile, ratio, false, heads_, entries_, lights_);
-    band.always_finishes = lanes_ > 1 || std::uint64_t(list_work) * static_cast<std::uint64_t>(exact.sectors) < kMostWork;
+    // An open sector, and one that is looked through for lights, takes a little more than its list says.
+    band.most_dispatches = solver_dispatches(list_work + std::int64_t(list_work) / 8 + 40, exact.sectors, long_loops_ ? kMostWorkOfLongLoops : kMostWork);
+    // Lanes share the sectors: none has so much to do that a dispatch would not end it.
+    if (lanes_ > 1) band.most_dispatches = 1;
     return work;
 }
 
@@ -170,7 +174,9 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
     return work;
 }
 
-// Dispatches until every point is done: one whose loops have spent their iterations goes on in the next.
+// Dispatches until every point is done: one whose loops have spent their iterations goes on in the next. Where loops may be long, as often
+// as might be needed: it is seldom more than once, and what waits for nothing is quicker. One such driver (NVIDIA 580) also reads back
+// counters that are the group counts of a dispatch as they were before it, and so tells nothing of who is done.
 void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work, int moment,
                            const std::function<void(const glsl::ExactParams&)>& dispatch) {
     heads_.bind_texture(glsl::kExactHeadsUnit);
@@ -185,16 +191,18 @@ void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work,
     }
     counters_.bind_storage(glsl::kExactCountersStorage);
     counters_.bind_indirect();
-    for (;;) {
+    for (int done = 0;;) {
         dispatch(params);
         ++work.dispatches;
-        if (band.always_finishes) break;
+        params.continues = 1;
+        ++done;
+        if (band.most_dispatches == 1 || (long_loops_ && done == band.most_dispatches)) break;
+        if (long_loops_) continue;
         std::uint32_t unfinished = 0;
         counters_.read(4 * glsl::kExactCountUnfinished, &unfinished, sizeof(unfinished));
         if (unfinished == 0) break;
         unfinished = 0;
         counters_.write(4 * glsl::kExactCountUnfinished, &unfinished, sizeof(unfinished));
-        params.continues = 1;
     }
 }
 

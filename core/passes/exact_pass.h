@@ -30,8 +30,11 @@ public:
 // Keeps its buffers from frame to frame.
 class ExactPass {
 public:
-    // `lanes`: threads that share the sectors of four points; more keep a GPU busy, and llvmpipe has no threads to spare.
-    explicit ExactPass(const std::string& shader_dir, int lanes = 1);
+    explicit ExactPass(const std::string& shader_dir);
+    // On a device that ends no long loops: a point that has much to see is done in one dispatch, or a few.
+    void allow_long_loops() { long_loops_ = true; }
+    // Threads that share the sectors of four points, before the first frame: more keep a GPU busy, and llvmpipe has none to spare.
+    void share_sectors(int lanes) { lanes_ = lanes; }
 
     // `record(name, extent, run)` times each step: lists, points, cells, fill.
     using Record = std::function<void(const char* name, glm::ivec2 extent, const std::function<PassWork()>& run)>;
@@ -73,7 +76,8 @@ private:
     gl::ComputeProgram& solver_for(const Needs& needs);
 
     std::string shader_dir_;
-    int lanes_;
+    int lanes_ = 1;
+    bool long_loops_ = false;
     std::map<std::pair<bool, bool>, gl::ComputeProgram> lists_;
     std::map<Needs, gl::ComputeProgram> solvers_;
     gl::ComputeProgram split_;
