@@ -35,10 +35,12 @@
 #include "core/passes/reference_pass.h"
 #include "core/passes/resolve_pass.h"
 #include "core/passes/scene_buffers.h"
+#include "core/passes/sum_pass.h"
 #include "core/passes/surface_light.h"
 #include "core/plan/plan.h"
 #include "core/plan/shape_lists.h"
 #include "core/plan/skip.h"
+#include "core/plan/split_lights.h"
 #include "core/scene/lower.h"
 #include "core/scene/words.h"
 #include "glsl/cascade.h"
@@ -50,6 +52,9 @@ namespace {
 
 // Two renders of 4096 x 4096.
 constexpr std::size_t kPoolBytes = std::size_t(1) << 30;
+
+// Threads of the solver that share four points.
+constexpr int kSolverLanesOfGpu = 4;
 
 }  // namespace
 
@@ -65,6 +70,7 @@ struct Renderer::Impl {
           lone(options.shader_dir),
           closed(options.shader_dir),
           hrc(options.shader_dir),
+          summing(options.shader_dir),
           reference(options.shader_dir),
           exact(options.shader_dir),
           delta(options.shader_dir),
@@ -83,6 +89,9 @@ struct Renderer::Impl {
         info.max_group_invocations = gl_info.max_group_invocations;
         info.max_loop_iterations = gl::measure_loop_limit(options.shader_dir);
         limits = device_limits(info.max_texture_side, info.max_texture_buffer_texels, info.max_loop_iterations, gl_info.software);
+        const bool long_loops = !gl_info.software && info.max_loop_iterations == 0;
+        if (long_loops) exact.allow_long_loops();
+        exact.share_sectors(options.solver_lanes > 0 ? options.solver_lanes : long_loops ? kSolverLanesOfGpu : 1);
         // About 10 ms a dispatch on two cores of llvmpipe; a GPU takes a hundred times that.
         const std::size_t factor = gl_info.software ? 1 : 128;
         settings = {factor * 6'000'000, factor * 300'000, factor * 1'000'000, &textures};
@@ -111,6 +120,7 @@ struct Renderer::Impl {
     LonePass lone;
     ClosedPass closed;
     HrcPass hrc;
+    SumPass summing;
     ReferencePass reference;
     ExactPass exact;
     DeltaPass delta;
@@ -267,6 +277,12 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         return result;
     }
 
+    // What is sampled must not shine with what is solved.
+    std::optional<SceneBuffers> sampled;
+    if (plan.exact.used && plan.hrc.active()) {
+        sampled.emplace(pack_scene(sampled_part(scene, plan.solved_shapes), plan.radiance_scale), scene.sky, plan);
+        sampled->bind();
+    }
     const SurfaceLight surfaces = plan.needs.surfaces ? SurfaceLight(plan, scene.sky, exact, delta, settings, record) : SurfaceLight();
     surfaces.bind();
     const bool marches = !plan.cascades.empty() || plan.hrc.active();
@@ -297,12 +313,14 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         ExactPass::SeeCells see_cells;
         if (plan.look.at == LookAt::skipped) see_cells = [&](const gl::Texture2D& cells, int row, int rows) { look.see_cells(cells, row, rows); };
         ExactPass::Light found;
-        exact.run(plan, scene.sky, field, settings, delta,
+        exact.run(plan, plan.method == "exact" ? scene.sky : Sky{}, field, settings, delta,
                   [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, found, see_cells);
         radiance = std::move(found.mean);
         moment_x = std::move(found.moment_x);
         moment_y = std::move(found.moment_y);
     }
+    gl::Texture2D solved;
+    if (sampled) solved = std::move(radiance);
     if (plan.hrc.active()) radiance = render_hrc(plan, field, look, record);
     if (plan.look.at != LookAt::picture) {
         record.host("view", plan.shown.size, [&] { result.picture = look.draw(plan); });
@@ -322,6 +340,17 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
             return work;
         });
     if (plan.lone) record.pass("lone pixels", plan.lit.size, [&] { return lone.run(plan, scene.sky, field, settings, radiance); });
+    if (sampled) {
+        record.pass("sum", plan.canvas, [&] {
+            gl::Texture2D both;
+            const PassWork work = summing.run(plan, radiance, solved, settings, both);
+            settings.give(std::move(radiance));
+            settings.give(std::move(solved));
+            radiance = std::move(both);
+            return work;
+        });
+        buffers.bind();
+    }
     gl::Texture2D lights;
     // On a floor with relief lights without a size are added to what it sends up.
     const bool lit_floor = plan.floor.relief && scene.output.solids != Solids::lit;
@@ -373,7 +402,7 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     settings.give(std::move(sent_up));
 
     stats.passes = record.finish();
-    stats.gpu_bytes = plan.gpu_bytes + buffers.bytes();
+    stats.gpu_bytes = plan.gpu_bytes + buffers.bytes() + (sampled ? sampled->bytes() : 0);
     if (plan.exact.used && plan.exact.settings.largest_cell > 1) {
         double points = 0;
         for (const PassStats& pass : stats.passes) points += double(pass.points);
@@ -433,35 +462,6 @@ RenderResult Renderer::render(const Scene& given, const StopCheck& stop) {
         if (scene.render.method != "auto") throw;
         return impl_->render(scene, problem.what());
     }
-}
-
-std::string Renderer::self_test() {
-    // A lamp of radiance 1 under a grey sky: far from the lamp its share is asin(R / r) / pi.
-    Scene scene;
-    scene.canvas.width = 48;
-    scene.canvas.height = 48;
-    scene.sky.radiance = Colour(0.25);
-    scene.output.format = "pfm";
-    const ImageF open = std::get<ImageF>(render(scene).picture);
-    for (const float value : open.data)
-        if (!(std::abs(value - 0.25f) < 1e-4f))
-            return "A uniform sky of radiance 0.25 rendered as " + std::to_string(value) + ".";
-    Shape lamp;
-    lamp.geometry = Circle{{24, 24}, 6};
-    lamp.emission = Colour(1);
-    scene.shapes.push_back(lamp);
-    const ImageF lit = std::get<ImageF>(render(scene).picture);
-    double mean = 0;
-    double expected = 0;
-    for (int x = 0; x < 48; ++x) {
-        const double distance = std::hypot(x + 0.5 - 24.0, 0.5 - 24.0);
-        const double share = std::asin(6.0 / distance) / std::numbers::pi;
-        mean += double(*lit.at(x, 0)) / 48;
-        expected += (share + 0.25 * (1 - share)) / 48;
-    }
-    if (!(std::abs(mean / expected - 1) < 0.05))
-        return "A disc under a grey sky rendered as " + std::to_string(mean) + " instead of " + std::to_string(expected) + ".";
-    return {};
 }
 
 std::vector<DeviceListing> Renderer::list_devices() {

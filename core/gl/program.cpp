@@ -94,4 +94,13 @@ void ComputeProgram::run(const void* params, std::size_t bytes, glm::ivec2 exten
     glMemoryBarrier(kPassBarrier);
 }
 
+void ComputeProgram::run_indirect(const void* params, std::size_t bytes, std::size_t offset) {
+    checkpoint();
+    params_.write(params, bytes);
+    params_.bind(0);
+    glUseProgram(id_);
+    glDispatchComputeIndirect(static_cast<GLintptr>(offset));
+    glMemoryBarrier(kPassBarrier);
+}
+
 }  // namespace penumbra::gl

@@ -43,9 +43,16 @@ public:
         return dispatches;
     }
 
+    // As many groups as three uints at `offset` of the bound indirect buffer say.
+    template <class Params>
+    void dispatch_indirect(const Params& params, std::size_t offset) {
+        run_indirect(&params, sizeof(Params), offset);
+    }
+
 private:
     int rows_per_band(glm::ivec2 extent, std::size_t slice) const;
     void run(const void* params, std::size_t bytes, glm::ivec2 extent);
+    void run_indirect(const void* params, std::size_t bytes, std::size_t offset);
 
     std::string name_;
     glm::ivec2 group_{1};

@@ -22,6 +22,7 @@ public:
     GLuint buffer() const { return buffer_; }
     void bind_storage(int binding) const;
     void bind_texture(int unit) const;
+    void bind_indirect() const;
     // Zeroes the first `bytes`.
     void clear(std::size_t bytes);
     void write(std::size_t offset, const void* data, std::size_t bytes);
