@@ -50,7 +50,6 @@ ExactPass::ExactPass(const std::string& shader_dir)
       counters_(GL_R32UI, 4 * glsl::kExactCountTiles),
       change_(GL_R32UI, 8) {}
 
-void ExactPass::allow_long_loops() { long_loops_ = true; }
 
 std::size_t ExactPass::bytes() const {
     return coarse_heads_.bytes() + coarse_entries_.bytes() + coarse_lights_.bytes() + heads_.bytes() + entries_.bytes() +
@@ -75,6 +74,7 @@ gl::ComputeProgram& ExactPass::solver_for(const Needs& needs) {
                                            {"kSurfaces", needs.surfaces ? 1 : 0},
                                            {"kNodes", needs.nodes ? 1 : 0},
                                            {"kMoment", needs.moment},
+                                           {"kExactLanes", lanes_},
                                            {"kBudget", static_cast<int>(long_loops_ ? kMostWorkOfLongLoops : kMostWork)}};
     return solvers_.emplace(needs, gl::ComputeProgram("exact_solve.comp", sizeof(glsl::ExactParams), shader_dir_, constants)).first->second;
 }
@@ -143,6 +143,8 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
     const std::uint32_t list_work = make(band.params.tiles, glsl::kExactTile, ratio, false, heads_, entries_, lights_);
     // An open sector, and one that is looked through for lights, takes a little more than its list says.
     band.most_dispatches = solver_dispatches(list_work + std::int64_t(list_work) / 8 + 40, exact.sectors, long_loops_ ? kMostWorkOfLongLoops : kMostWork);
+    // Lanes share the sectors: none has so much to do that a dispatch would not end it.
+    if (lanes_ > 1) band.most_dispatches = 1;
     return work;
 }
 

@@ -32,7 +32,9 @@ class ExactPass {
 public:
     explicit ExactPass(const std::string& shader_dir);
     // On a device that ends no long loops: a point that has much to see is done in one dispatch, or a few.
-    void allow_long_loops();
+    void allow_long_loops() { long_loops_ = true; }
+    // Threads that share the sectors of four points, before the first frame: more keep a GPU busy, and llvmpipe has none to spare.
+    void share_sectors(int lanes) { lanes_ = lanes; }
 
     // `record(name, extent, run)` times each step: lists, points, cells, fill.
     using Record = std::function<void(const char* name, glm::ivec2 extent, const std::function<PassWork()>& run)>;
@@ -74,6 +76,7 @@ private:
     gl::ComputeProgram& solver_for(const Needs& needs);
 
     std::string shader_dir_;
+    int lanes_ = 1;
     bool long_loops_ = false;
     std::map<std::pair<bool, bool>, gl::ComputeProgram> lists_;
     std::map<Needs, gl::ComputeProgram> solvers_;
