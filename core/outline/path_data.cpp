@@ -10,6 +10,9 @@
 namespace penumbra {
 namespace {
 
+// Far beyond all coordinates that a scene may have; four of them multiplied are finite.
+constexpr double kMostNumber = 1e60;
+
 constexpr double kMostEdges = 4096;  // of one curve: more than any picture shows
 
 double length(Point p) { return std::hypot(p.x, p.y); }
@@ -56,7 +59,7 @@ public:
         const char* first = text_.data() + at_ + (text_[at_] == '+' ? 1 : 0);
         double value = 0;
         const auto result = std::from_chars(first, text_.data() + end, value);
-        if (result.ec != std::errc() || !std::isfinite(value)) return std::nullopt;
+        if (result.ec != std::errc() || std::abs(value) > kMostNumber) return std::nullopt;
         at_ = end;
         return value;
     }
@@ -107,6 +110,11 @@ void append_arc(Ring& ring, Point radii, double rotation_deg, bool large, bool s
     double turn = to - from;
     if (sweep && turn < 0) turn += 2 * std::numbers::pi;
     if (!sweep && turn > 0) turn -= 2 * std::numbers::pi;
+    // Radii that are nothing beside the way to the end, whose squares are lost.
+    if (!std::isfinite(rx) || !std::isfinite(ry) || !std::isfinite(middle.x) || !std::isfinite(middle.y) || !std::isfinite(turn)) {
+        ring.push_back(end);
+        return;
+    }
     // The sagitta of a chord over the angle a is r (1 - cos(a/2)).
     const double chord = 2 * std::acos(std::clamp(1 - tolerance / std::max(rx, ry), -1.0, 1.0));
     const double edges = edges_for(std::abs(turn) / std::max(chord, 1e-9));

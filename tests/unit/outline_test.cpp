@@ -153,6 +153,7 @@ TEST(PathData, MistakesAreToldWhereTheyStand) {
     EXPECT_EQ(at("M 1 1 L 2 a"), 10);
     EXPECT_EQ(at("M 1 1 A 5 5 0 2 0 9 9"), 14);
     EXPECT_EQ(at("M 1 1 L 1e999 0"), 8);
+    EXPECT_EQ(at("M 1 1 L 1e61 0"), 8);
     EXPECT_EQ(at("M 1 1 , L 2 2"), 6);
     EXPECT_EQ(at("M 1 1 L . 2"), 8);
 }
@@ -166,6 +167,14 @@ TEST(PathData, NoTextDoesHarm) {
         const auto result = rings_of_path(d, 0.01, 1000);
         if (const auto* all = std::get_if<std::vector<Ring>>(&result)) {
             for (const Ring& ring : *all) EXPECT_GE(ring.size(), 2u);
+        }
+    }
+}
+
+TEST(PathData, ArcsWhoseSquaresAreLostAreStraight) {
+    for (const char* d : {"M1e60 0A3 4 30 1 0 -1e60 5z", "M0 0A1e-200 1e-200 0 0 1 1 1z", "M0 0A1e60 1e-300 0 0 1 1 1z", "M0 0A1e-170 1e-170 0 0 1 1e-170 0z"}) {
+        for (const Ring& ring : rings(d)) {
+            for (const Point& point : ring) EXPECT_TRUE(std::isfinite(point.x) && std::isfinite(point.y)) << d;
         }
     }
 }
