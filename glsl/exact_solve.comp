@@ -477,8 +477,7 @@ void solve_nodes(int tile_index, int first, bool without_job) {
 }
 
 void main() {
-    int index = int(gl_GlobalInvocationID.x);
-    if (kNodes != 0) index += params.origin.y * params.extent.x;
+    int index = int(gl_GlobalInvocationID.x) + params.origin.y * params.extent.x;
     int count = kNodes != 0 ? params.jobs : int(counters[kExactCountLevel + 4 * params.level]);
     bool without_job = index >= count;
     if (kExactLanes == 1 && without_job) return;

@@ -25,6 +25,9 @@ inline int solver_dispatches(std::int64_t list_work, int sectors, std::int64_t b
     return static_cast<int>(std::min<std::int64_t>(sectors, list_work * sectors / (budget - list_work) + 1));
 }
 
+// Iterations, by their bound, of the groups that one dispatch covers; and groups, however long: a device has some threads.
+inline constexpr std::uint64_t kSolverSlice = 500'000, kFewestGroups = 16;
+
 inline int divided_up(int a, int b) { return (a + b - 1) / b; }
 
 inline gl::StorageBuffer at_least(gl::StorageBuffer buffer, GLenum format, std::size_t bytes) {
@@ -57,7 +60,14 @@ struct ExactPass::Band {
     glm::ivec2 coarse_tiles{0};
     std::array<LevelPoints, kLevels> levels{};
     int most_dispatches = 1;  // of the solver, after which every point is done
+    std::uint64_t most_work = 0;  // iterations that a point may take in all
     glm::ivec2 area{0};  // px that its lists cover
+
+    // So many groups of the solver in rows, each short enough for a dispatch.
+    glm::ivec2 solver_rows(int groups) const {
+        const auto row = static_cast<int>(std::clamp<std::uint64_t>(kSolverSlice / std::clamp<std::uint64_t>(most_work, 1, kMostWork), kFewestGroups, 65535));
+        return {row * glsl::kExactSolveGroupX, divided_up(groups, row)};
+    }
 };
 
 }  // namespace penumbra

@@ -145,6 +145,7 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
     band.most_dispatches = solver_dispatches(list_work + std::int64_t(list_work) / 8 + 40, exact.sectors, long_loops_ ? kMostWorkOfLongLoops : kMostWork);
     // Lanes share the sectors: none has so much to do that a dispatch would not end it.
     if (lanes_ > 1) band.most_dispatches = 1;
+    band.most_work = std::uint64_t(list_work) * static_cast<std::uint64_t>(exact.sectors);
     return work;
 }
 
@@ -168,8 +169,21 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
     band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_WRITE);
     field.distance.bind_texture(glsl::kExactDistanceUnit);
     points_.bind_texture(glsl::kExactPointsUnit);
+    const std::size_t group_count = 4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1);
+    if (lanes_ > 1) {
+        counters_.bind_indirect();
+        run_solver(params, band, work, moment, [&](const glsl::ExactParams& p) {
+            program.dispatch_indirect(p, group_count);
+            return 1;
+        });
+        return work;
+    }
+    // So many at a time that no dispatch is long: a render stops, and says that it lives, between two.
+    std::uint32_t groups = 0;
+    counters_.read(group_count, &groups, sizeof(groups));
+    params.extent = band.solver_rows(static_cast<int>(groups));
     run_solver(params, band, work, moment, [&](const glsl::ExactParams& p) {
-        program.dispatch_indirect(p, 4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1));
+        return program.dispatch(p, p.extent, static_cast<std::size_t>(p.extent.x));
     });
     return work;
 }
@@ -178,7 +192,7 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
 // as might be needed: it is seldom more than once, and what waits for nothing is quicker. One such driver (NVIDIA 580) also reads back
 // counters that are the group counts of a dispatch as they were before it, and so tells nothing of who is done.
 void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work, int moment,
-                           const std::function<void(const glsl::ExactParams&)>& dispatch) {
+                           const std::function<int(const glsl::ExactParams&)>& dispatch) {
     heads_.bind_texture(glsl::kExactHeadsUnit);
     entries_.bind_texture(glsl::kExactEntriesUnit);
     lights_.bind_texture(glsl::kExactLightsUnit);
@@ -190,10 +204,8 @@ void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work,
         elements_.bind_texture(glsl::kExactElementsUnit);
     }
     counters_.bind_storage(glsl::kExactCountersStorage);
-    counters_.bind_indirect();
     for (int done = 0;;) {
-        dispatch(params);
-        ++work.dispatches;
+        work.dispatches += dispatch(params);
         params.continues = 1;
         ++done;
         if (band.most_dispatches == 1 || (long_loops_ && done == band.most_dispatches)) break;

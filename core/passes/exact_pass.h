@@ -62,7 +62,7 @@ private:
     void bounce(const Plan& plan, const PassSettings& settings, DeltaPass& delta, const Record& record, Band& band);
     PassWork reflect(const Plan& plan, Band& band, bool first);
     void run_solver(glsl::ExactParams params, Band& band, PassWork& work, int moment,
-                    const std::function<void(const glsl::ExactParams&)>& dispatch);
+                    const std::function<int(const glsl::ExactParams&)>& dispatch);
 
     // A program for what a scene has, compiled when first asked for.
     struct Needs {
