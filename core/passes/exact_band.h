@@ -17,6 +17,8 @@ inline constexpr int kLevels = 4;  // cells of 8, 4, 2 and 1 pixels
 // Iterations that the solver spends on one point in one dispatch at most (kBudget of exact_solve.comp): under what drivers allow that
 // end long loops, or a tenth of a second of a GPU.
 inline constexpr std::int64_t kMostWork = 30'000, kMostWorkOfLongLoops = 1'000'000;
+// Iterations, by their bound, of the groups that a dispatch covers where it is to be short; and groups, however long: a device has some threads.
+inline constexpr std::int64_t kSolverSlice = 500'000, kFewestGroups = 16;
 
 // How many dispatches finish every point: a list takes `list_work` iterations at most, one after another of the `sectors` lists of a
 // point are asked, and each dispatch begins no list that might not end in it.
@@ -24,9 +26,6 @@ inline int solver_dispatches(std::int64_t list_work, int sectors, std::int64_t b
     if (2 * list_work > budget) return sectors;
     return static_cast<int>(std::min<std::int64_t>(sectors, list_work * sectors / (budget - list_work) + 1));
 }
-
-// Iterations, by their bound, of the groups that one dispatch covers; and groups, however long: a device has some threads.
-inline constexpr std::uint64_t kSolverSlice = 500'000, kFewestGroups = 16;
 
 inline int divided_up(int a, int b) { return (a + b - 1) / b; }
 
@@ -60,12 +59,12 @@ struct ExactPass::Band {
     glm::ivec2 coarse_tiles{0};
     std::array<LevelPoints, kLevels> levels{};
     int most_dispatches = 1;  // of the solver, after which every point is done
-    std::uint64_t most_work = 0;  // iterations that a point may take in all
+    std::int64_t point_work = 1;  // iterations that a point takes at most, all its dispatches together
     glm::ivec2 area{0};  // px that its lists cover
 
     // So many groups of the solver in rows, each short enough for a dispatch.
     glm::ivec2 solver_rows(int groups) const {
-        const auto row = static_cast<int>(std::clamp<std::uint64_t>(kSolverSlice / std::clamp<std::uint64_t>(most_work, 1, kMostWork), kFewestGroups, 65535));
+        const auto row = static_cast<int>(std::clamp<std::int64_t>(kSolverSlice / std::clamp<std::int64_t>(point_work, 1, kMostWork), kFewestGroups, 65535));
         return {row * glsl::kExactSolveGroupX, divided_up(groups, row)};
     }
 };

@@ -141,11 +141,11 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
         ratio = exact.coarse_tile / glsl::kExactTile;
     }
     const std::uint32_t list_work = make(band.params.tiles, glsl::kExactTile, ratio, false, heads_, entries_, lights_);
+    band.point_work = std::int64_t(list_work) * exact.sectors;
     // An open sector, and one that is looked through for lights, takes a little more than its list says.
     band.most_dispatches = solver_dispatches(list_work + std::int64_t(list_work) / 8 + 40, exact.sectors, long_loops_ ? kMostWorkOfLongLoops : kMostWork);
     // Lanes share the sectors: none has so much to do that a dispatch would not end it.
     if (lanes_ > 1) band.most_dispatches = 1;
-    band.most_work = std::uint64_t(list_work) * static_cast<std::uint64_t>(exact.sectors);
     return work;
 }
 
@@ -170,20 +170,15 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
     field.distance.bind_texture(glsl::kExactDistanceUnit);
     points_.bind_texture(glsl::kExactPointsUnit);
     const std::size_t group_count = 4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1);
-    if (lanes_ > 1) {
-        counters_.bind_indirect();
-        run_solver(params, band, work, moment, [&](const glsl::ExactParams& p) {
-            program.dispatch_indirect(p, group_count);
-            return 1;
-        });
-        return work;
-    }
-    // So many at a time that no dispatch is long: a render stops, and says that it lives, between two.
     std::uint32_t groups = 0;
-    counters_.read(group_count, &groups, sizeof(groups));
-    params.extent = band.solver_rows(static_cast<int>(groups));
+    if (in_slices()) {
+        counters_.read(group_count, &groups, sizeof(groups));
+        params.extent = band.solver_rows(static_cast<int>(groups));
+    }
     run_solver(params, band, work, moment, [&](const glsl::ExactParams& p) {
-        return program.dispatch(p, p.extent, static_cast<std::size_t>(p.extent.x));
+        if (in_slices()) return program.dispatch(p, p.extent, static_cast<std::size_t>(p.extent.x));
+        program.dispatch_indirect(p, group_count);
+        return 1;
     });
     return work;
 }
@@ -204,6 +199,7 @@ void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work,
         elements_.bind_texture(glsl::kExactElementsUnit);
     }
     counters_.bind_storage(glsl::kExactCountersStorage);
+    counters_.bind_indirect();
     for (int done = 0;;) {
         work.dispatches += dispatch(params);
         params.continues = 1;

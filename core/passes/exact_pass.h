@@ -63,6 +63,9 @@ private:
     PassWork reflect(const Plan& plan, Band& band, bool first);
     void run_solver(glsl::ExactParams params, Band& band, PassWork& work, int moment,
                     const std::function<int(const glsl::ExactParams&)>& dispatch);
+    // Whether the solver is cut into short dispatches, between which a render stops and says that it lives: on a processor, a dense scene takes
+    // seconds.
+    bool in_slices() const { return !long_loops_ && lanes_ == 1; }
 
     // A program for what a scene has, compiled when first asked for.
     struct Needs {
