@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// The edge of the network: one thread that accepts connections, reads whole requests, keeps idle connections, writes what slow
+// readers take slowly, and ends what takes too long. Threads of a pool see whole requests alone (docs/decisions/0078).
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "server/http/request_reader.h"
+
+namespace penumbra {
+
+struct EdgeLimits {
+    RequestLimits request;
+    std::chrono::milliseconds request_time{0};
+    std::chrono::milliseconds response_time{0};
+    std::chrono::milliseconds keep_alive{0};
+    std::size_t threads = 0;
+    std::size_t waiting_connections = 0;  // beside one for each thread
+    std::size_t held_bytes = 0;           // of requests and answers, of all connections
+};
+
+// A connection belongs to the edge's thread, or, while its request is being answered, to one thread of a pool.
+struct Connection {
+    using Clock = std::chrono::steady_clock;
+    enum class State { reading, answering, writing, lingering, closed };
+
+    Connection(int the_socket, const RequestLimits& limits) : socket(the_socket), reader(limits) {}
+
+    const int socket;
+    State state = State::reading;
+    RequestReader reader;
+    std::string rest;     // what came after the request
+    std::string unsent;   // of the answer, from `sent` on
+    std::size_t sent = 0;
+    Clock::time_point start;     // the first byte of the request
+    Clock::time_point since;     // of the present state
+    Clock::time_point deadline;  // of the same
+    bool fresh = true;    // has sent nothing yet
+    bool go_on = false;   // after the answer
+    bool probe = false;
+    bool watched = false;
+    Fault refusal = Fault::none;  // of the connection itself
+    std::size_t held = 0, held_unsent = 0;  // bytes, as they are counted
+    std::size_t place = 0;
+    std::promise<void>* ended = nullptr;
+};
+
+// Bytes that all connections hold together.
+class Held {
+public:
+    explicit Held(std::size_t most) : most_(most) {}
+    void change(std::size_t& counted, std::size_t now);
+    bool over() const { return bytes_ > most_; }
+    bool has_room(std::size_t bytes) const { return bytes_ + bytes <= most_; }
+    std::size_t bytes() const { return bytes_; }
+
+private:
+    const std::size_t most_;
+    std::atomic<std::size_t> bytes_{0};
+};
+
+// Threads, made when needed, that take connections one after another.
+class Pool {
+public:
+    Pool(std::size_t most_threads, std::function<void(Connection&)> work) : most_threads_(most_threads), work_(std::move(work)) {}
+    ~Pool() { stop(); }
+    void add(Connection& connection, bool first);
+    void stop();  // when all is done
+
+private:
+    void run();
+
+    const std::size_t most_threads_;
+    const std::function<void(Connection&)> work_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<Connection*> waiting_;
+    std::vector<std::thread> threads_;
+    std::size_t idle_ = 0;
+    bool stopping_ = false;
+};
+
+class Edge {
+public:
+    struct Judgement {
+        bool wants_body = true;
+        bool probe = false;  // answered by a thread of its own
+    };
+    struct Work {
+        // What the head alone says. On the edge's thread: soon done.
+        std::function<Judgement(const RequestHead&, const RequestReader&)> judge;
+        // Answers a request that is whole or refused; whether the connection goes on. On a thread of a pool.
+        std::function<bool(Connection&)> answer;
+    };
+
+    Edge(const EdgeLimits& limits, Work work);
+    ~Edge();
+    Edge(const Edge&) = delete;
+    Edge& operator=(const Edge&) = delete;
+
+    void start(int listener);  // which listens; the edge closes it
+    bool running() const { return running_; }
+    void serve(int socket);  // a connection from elsewhere, until it ends
+    void drain();  // connections end after their present request
+    void stop();   // takes no more, and returns when all is answered
+
+    // For who answers: what the edge's thread is to send when the answer is complete. False: there is no room for it.
+    bool send_later(Connection& connection, std::string_view bytes);
+    std::string_view unsent(const Connection& connection) const { return std::string_view(connection.unsent).substr(connection.sent); }
+    void has_sent(Connection& connection, std::size_t bytes);
+    std::size_t most_connections() const { return most_connections_; }
+
+private:
+    using Clock = Connection::Clock;
+    using State = Connection::State;
+
+    void run();
+    int timeout() const;
+    void wake() const;
+    void take_messages();
+    void accept_all();
+    void accept(int socket, std::promise<void>* ended);
+    bool make_room();
+    void enter(Connection& connection, State state, Clock::time_point deadline);
+    void watch(Connection& connection, unsigned events);
+    void ignore(Connection& connection);
+    void on_event(Connection& connection);
+    void receive(Connection& connection);
+    void feed(Connection& connection, std::string_view bytes);
+    void await_request(Connection& connection);
+    bool ask(Connection& connection, bool more_is_there);
+    void hand_over(Connection& connection);
+    void take_back(Connection& connection);
+    void write(Connection& connection);
+    void finish(Connection& connection);
+    void linger(Connection& connection, std::chrono::milliseconds time);
+    void close(Connection& connection);
+    void expire();
+    void expire(Connection& connection);
+    void begin_drain();
+    void bound_held();
+    void count(Connection& connection);
+    Clock::time_point reading_deadline(const Connection& connection, bool begun) const;
+
+    const EdgeLimits limits_;
+    const Work work_;
+    std::size_t most_connections_;
+    Held held_;
+    int listener_ = -1, epoll_ = -1, wake_ = -1;
+    std::vector<std::unique_ptr<Connection>> connections_, ended_;
+    std::size_t lingering_ = 0;
+    std::vector<char> block_;
+    Clock::time_point now_, next_deadline_ = Clock::time_point::max(), accept_again_ = Clock::time_point::max(), drain_start_{};
+    std::atomic<bool> running_{false}, draining_{false}, stopping_{false};
+    bool drain_begun_ = false;
+
+    std::mutex mutex_;  // of what others tell the edge's thread
+    std::vector<Connection*> returned_;
+    std::vector<std::pair<int, std::promise<void>*>> arrived_;
+
+    Pool requests_, side_;  // the second: probes and refusals
+    std::thread thread_;
+};
+
+}  // namespace penumbra
