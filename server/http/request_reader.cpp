@@ -156,10 +156,7 @@ std::size_t RequestReader::take_chunked(std::string_view bytes) {
         std::size_t count = 1;
         if (chunk_ == Chunk::data) {
             count = std::size_t(std::min<std::uint64_t>(bytes.size() - taken, left_));
-            if (body_.size() + count > limits_->body_bytes) {
-                refuse(Fault::body_too_large);
-                break;
-            }
+            count = std::min(count, limits_->framed_bytes + 1 - framed_bytes_);  // refused at the same byte in whatever pieces
             append(bytes.substr(taken, count));
             left_ -= count;
             if (left_ == 0) chunk_ = Chunk::data_return;
@@ -170,7 +167,7 @@ std::size_t RequestReader::take_chunked(std::string_view bytes) {
         }
         taken += count;
         framed_bytes_ += count;
-        if (framed_bytes_ > limits_->framed_bytes && !has_body_) refuse(Fault::body_too_large);
+        if (framed_bytes_ > limits_->framed_bytes) refuse(Fault::body_too_large);
     }
     return taken;
 }
