@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <pthread.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
 #include <sys/resource.h>
@@ -22,6 +23,9 @@ using std::chrono::milliseconds;
 constexpr std::size_t kBlockBytes = 64u << 10;
 constexpr int kBlocksInTurn = 4;     // read from one connection before the others have their turn
 constexpr int kAcceptedInTurn = 64;
+constexpr int kEventsBetweenAccepts = 16;  // who comes newly, a probe perhaps, does not wait for a turn of all others
+// The edge's thread does little for each request, and everyone waits for it; threads that parse and encode can wait (nice).
+constexpr int kYield = 5;
 // A client that is refused in the middle of its body reads the answer only when it stops sending; and closing with something unread
 // would destroy the answer on its way (RST).
 constexpr milliseconds kLingerTime{2000};
@@ -95,6 +99,8 @@ void Pool::stop() {
 }
 
 void Pool::run() {
+    ::pthread_setname_np(::pthread_self(), name_);
+    if (yields_) ::setpriority(PRIO_PROCESS, 0, ::getpriority(PRIO_PROCESS, 0) + kYield);  // of this thread alone
     std::unique_lock lock(mutex_);
     while (true) {
         ++idle_;
@@ -117,8 +123,8 @@ Edge::Edge(const EdgeLimits& limits, Work work)
       most_connections_(limits.threads + limits.waiting_connections),
       held_(limits.held_bytes),
       block_(kBlockBytes),
-      requests_(limits.threads, [this](Connection& connection) { take_back(connection); }),
-      side_(1, [this](Connection& connection) { take_back(connection); }) {}
+      requests_("answers", limits.threads, true, [this](Connection& connection) { take_back(connection); }),
+      side_("probes", 1, false, [this](Connection& connection) { take_back(connection); }) {}
 
 Edge::~Edge() { stop(); }
 
@@ -178,6 +184,7 @@ int Edge::timeout() const {
 }
 
 void Edge::run() {
+    ::pthread_setname_np(::pthread_self(), "edge");
     epoll_event events[256];
     while (!(stopping_ && listener_ < 0 && connections_.empty())) {
         const int count = ::epoll_wait(epoll_, events, std::size(events), timeout());
@@ -185,6 +192,7 @@ void Edge::run() {
         bool woken = false;
         for (int i = 0; i < count; ++i) {
             void* const what = events[i].data.ptr;
+            if (i > 0 && i % kEventsBetweenAccepts == 0) accept_all();
             if (what == &listener_) {
                 accept_all();
             } else if (what == &wake_) {
@@ -225,7 +233,16 @@ void Edge::take_messages() {
 
 // ---- arriving
 
+void Edge::watch_listener(bool wanted) {
+    epoll_event event{};
+    event.events = wanted ? unsigned(EPOLLIN) : 0u;
+    event.data.ptr = &listener_;
+    ::epoll_ctl(epoll_, EPOLL_CTL_MOD, listener_, &event);
+    accept_again_ = wanted ? Clock::time_point::max() : now_ + kAcceptPause;
+}
+
 void Edge::accept_all() {
+    if (listener_ < 0 || (accept_again_ != Clock::time_point::max() && !stopping_)) return;
     for (int i = 0; i < kAcceptedInTurn || stopping_; ++i) {
         const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
         if (socket >= 0) {
@@ -235,11 +252,7 @@ void Edge::accept_all() {
             continue;
         }
         if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
-            // They wait in the system's queue.
-            epoll_event event{};
-            event.data.ptr = &listener_;
-            ::epoll_ctl(epoll_, EPOLL_CTL_MOD, listener_, &event);
-            accept_again_ = now_ + kAcceptPause;
+            watch_listener(false);  // they wait in the system's queue
             return;
         }
         if (errno != EINTR && errno != ECONNABORTED) return;
@@ -254,7 +267,10 @@ void Edge::accept(int socket, std::promise<void>* ended) {
     connection.start = now_;
     connection.ended = ended;
     if (!full) {
-        await_request(connection);
+        connection.since = now_;
+        enter(connection, State::reading, reading_deadline(connection, false));
+        on_event(connection);  // its request has often come with it
+        if (connection.state == State::reading) watch(connection, EPOLLIN);
     } else if (connections_.size() - lingering_ > most_connections_ + kMostRefusals) {
         close(connection);
     } else {
@@ -309,12 +325,6 @@ Edge::Clock::time_point Edge::reading_deadline(const Connection& connection, boo
     // What had been on its way gets its time, what comes later as well; who only kept a connection has none.
     const milliseconds rest = begun ? kDrainTime : connection.fresh ? kFreshDrainTime : milliseconds(0);
     return std::min(end, std::max(drain_start_, from) + rest);
-}
-
-void Edge::await_request(Connection& connection) {
-    connection.since = now_;
-    enter(connection, State::reading, reading_deadline(connection, false));
-    watch(connection, EPOLLIN);
 }
 
 void Edge::on_event(Connection& connection) {
@@ -523,15 +533,7 @@ void Edge::close(Connection& connection) {
 // ---- time
 
 void Edge::expire() {
-    if (now_ >= accept_again_) {
-        accept_again_ = Clock::time_point::max();
-        if (listener_ >= 0) {
-            epoll_event event{};
-            event.events = EPOLLIN;
-            event.data.ptr = &listener_;
-            ::epoll_ctl(epoll_, EPOLL_CTL_MOD, listener_, &event);
-        }
-    }
+    if (now_ >= accept_again_ && listener_ >= 0) watch_listener(true);
     if (now_ < next_deadline_) return;
     next_deadline_ = Clock::time_point::max();
     std::vector<Connection*> late;

@@ -75,7 +75,9 @@ private:
 // Threads, made when needed, that take connections one after another.
 class Pool {
 public:
-    Pool(std::size_t most_threads, std::function<void(Connection&)> work) : most_threads_(most_threads), work_(std::move(work)) {}
+    // `name` is for `top -H`; `yields`: others of the process have the processor first.
+    Pool(const char* name, std::size_t most_threads, bool yields, std::function<void(Connection&)> work)
+        : name_(name), most_threads_(most_threads), yields_(yields), work_(std::move(work)) {}
     ~Pool() { stop(); }
     void add(Connection& connection, bool first);
     void stop();  // when all is done
@@ -83,7 +85,9 @@ public:
 private:
     void run();
 
+    const char* const name_;
     const std::size_t most_threads_;
+    const bool yields_;
     const std::function<void(Connection&)> work_;
     std::mutex mutex_;
     std::condition_variable changed_;
@@ -132,6 +136,7 @@ private:
     void wake() const;
     void take_messages();
     void accept_all();
+    void watch_listener(bool wanted);
     void accept(int socket, std::promise<void>* ended);
     bool make_room();
     void enter(Connection& connection, State state, Clock::time_point deadline);
@@ -140,7 +145,6 @@ private:
     void on_event(Connection& connection);
     void receive(Connection& connection);
     void feed(Connection& connection, std::string_view bytes);
-    void await_request(Connection& connection);
     bool ask(Connection& connection, bool more_is_there);
     void hand_over(Connection& connection);
     void take_back(Connection& connection);
