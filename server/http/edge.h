@@ -72,27 +72,31 @@ private:
     std::atomic<std::size_t> bytes_{0};
 };
 
-// Threads, made when needed, that take connections one after another.
+// Threads, made when needed, that take connections one after another. Few at a time begin: more than there are processors would only
+// keep each other, and the edge, from them. Who is at work for longer waits for a render, and another may begin.
 class Pool {
 public:
-    // `name` is for `top -H`; `yields`: others of the process have the processor first.
-    Pool(const char* name, std::size_t most_threads, bool yields, std::function<void(Connection&)> work)
-        : name_(name), most_threads_(most_threads), yields_(yields), work_(std::move(work)) {}
+    Pool(const char* name, std::size_t most_threads, std::function<void(Connection&)> work);  // the name is for `top -H`
     ~Pool() { stop(); }
     void add(Connection& connection, bool first);
+    bool nudge();  // false when nobody waits; to be called now and then while somebody does
     void stop();  // when all is done
 
 private:
+    using Clock = Connection::Clock;
+
     void run();
+    void begin_another();
+    bool may_begin() const;
 
     const char* const name_;
-    const std::size_t most_threads_;
-    const bool yields_;
+    const std::size_t most_threads_, most_at_once_;
     const std::function<void(Connection&)> work_;
     std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Connection*> waiting_;
     std::vector<std::thread> threads_;
+    std::vector<Clock::time_point> begun_;  // of each thread that is at work
     std::size_t idle_ = 0;
     bool stopping_ = false;
 };
@@ -132,7 +136,7 @@ private:
     using State = Connection::State;
 
     void run();
-    int timeout() const;
+    int timeout();
     void wake() const;
     void take_messages();
     void accept_all();
