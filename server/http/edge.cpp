@@ -9,12 +9,10 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <pthread.h>
-#include <sched.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 namespace penumbra {
@@ -53,20 +51,6 @@ bool same_word(std::string_view a, std::string_view lower) {
     return a.size() == lower.size() && std::equal(a.begin(), a.end(), lower.begin(), [](char x, char y) {
                return std::tolower(static_cast<unsigned char>(x)) == y;
            });
-}
-
-// Short turns that come soon, from Linux 6.12 on; before, and where it is not allowed, nothing changes. The C library has no name
-// for this (sched_setattr(2)).
-void ask_for_short_turns() {
-    struct {
-        std::uint32_t size = 48, policy = SCHED_OTHER;
-        std::uint64_t flags = 0;
-        std::int32_t nice = 0;
-        std::uint32_t priority = 0;
-        std::uint64_t runtime = 100'000, deadline = 0, period = 0;  // nanoseconds
-    } attributes;
-    attributes.nice = ::getpriority(PRIO_PROCESS, 0);
-    ::syscall(SYS_sched_setattr, 0, &attributes, 0u);
 }
 
 // Raises the process's bound on files as far as it may; how many connections that leaves room for.
@@ -228,7 +212,6 @@ int Edge::timeout() {
 
 void Edge::run() {
     ::pthread_setname_np(::pthread_self(), "edge");
-    ask_for_short_turns();
     epoll_event events[256];
     while (!(stopping_ && listener_ < 0 && connections_.empty())) {
         const int count = ::epoll_wait(epoll_, events, std::size(events), timeout());
