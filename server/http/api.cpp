@@ -213,6 +213,7 @@ Edge::Judgement Api::judge(const RequestHead& head, const std::string& malformed
     request.path = head.target.substr(0, query);
     const Endpoint* endpoint = find(request.path);
     judgement.probe = endpoint && endpoint->probe;
+    judgement.at_once = endpoint && endpoint->get == &Api::alive;
     // What is written in another way is known when the library has read it.
     if (head.target.find_first_of("%#") != std::string_view::npos) return judgement;
     if (request.method != "POST") {

@@ -82,7 +82,7 @@ void Held::change(std::size_t& counted, std::size_t now) {
 Pool::Pool(const char* name, std::size_t most_threads, std::function<void(Connection&)> work)
     : name_(name),
       most_threads_(most_threads),
-      most_at_once_(std::min<std::size_t>(most_threads, std::thread::hardware_concurrency() + 2)),
+      most_at_once_(std::min<std::size_t>(most_threads, std::max(2u, std::thread::hardware_concurrency()))),
       work_(std::move(work)) {}
 
 bool Pool::may_begin() const {
@@ -426,6 +426,7 @@ bool Edge::ask(Connection& connection, bool more_is_there) {
     const RequestHead head(reader.head());
     const Judgement judgement = work_.judge(head, reader);
     connection.probe = judgement.probe;
+    connection.at_once = judgement.at_once;
     if (!judgement.wants_body) {
         reader.leave_body();
         return true;
@@ -460,6 +461,12 @@ void Edge::bound_held() {
 void Edge::hand_over(Connection& connection) {
     ignore(connection);
     enter(connection, State::answering, Clock::time_point::max());
+    if (connection.at_once && connection.reader.fault() == Fault::none && connection.rest.empty()) {
+        connection.go_on = work_.answer(connection);
+        enter(connection, State::writing, now_ + limits_.response_time);
+        write(connection);
+        return;
+    }
     const bool to_side = connection.probe || connection.refusal != Fault::none || connection.reader.fault() != Fault::none;
     (to_side ? side_ : requests_).add(connection, connection.probe);
 }
@@ -511,7 +518,7 @@ void Edge::finish(Connection& connection) {
         return;
     }
     connection.reader = RequestReader(limits_.request);
-    connection.probe = false;
+    connection.probe = connection.at_once = false;
     connection.since = now_;
     const std::string rest = std::move(connection.rest);
     connection.rest = {};

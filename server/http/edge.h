@@ -50,7 +50,7 @@ struct Connection {
     Clock::time_point deadline;  // of the same
     bool fresh = true;    // has sent nothing yet
     bool go_on = false;   // after the answer
-    bool probe = false;
+    bool probe = false, at_once = false;  // as judged
     bool watched = false;
     Fault refusal = Fault::none;  // of the connection itself
     std::size_t held = 0, held_unsent = 0;  // bytes, as they are counted
@@ -72,7 +72,7 @@ private:
     std::atomic<std::size_t> bytes_{0};
 };
 
-// Threads, made when needed, that take connections one after another. Few at a time begin: more than there are processors would only
+// Threads, made when needed, that take connections one after another. Few begin at a time: more than there are processors would only
 // keep each other, and the edge, from them. Who is at work for longer waits for a render, and another may begin.
 class Pool {
 public:
@@ -105,7 +105,8 @@ class Edge {
 public:
     struct Judgement {
         bool wants_body = true;
-        bool probe = false;  // answered by a thread of its own
+        bool probe = false;    // answered by a thread of its own
+        bool at_once = false;  // needs nothing: answered by the edge's thread
     };
     struct Work {
         // What the head alone says. On the edge's thread: soon done.
