@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The edge of the network: one thread that accepts connections, reads whole requests, keeps idle connections, writes what slow
-// readers take slowly, and ends what takes too long. Threads of a pool see whole requests alone (docs/decisions/0078).
+// readers take slowly, and ends what takes too long. Threads of a pool see whole requests alone (docs/decisions/0080).
 #pragma once
 
 #include <atomic>

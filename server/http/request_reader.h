@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A request as it arrives, byte by byte: bytes go in, a whole request or a refusal comes out. Nothing here knows a socket, a
-// clock or the HTTP library (docs/decisions/0078).
+// clock or the HTTP library (docs/decisions/0080).
 #pragma once
 
 #include <cstddef>
