@@ -35,10 +35,12 @@
 #include "core/passes/reference_pass.h"
 #include "core/passes/resolve_pass.h"
 #include "core/passes/scene_buffers.h"
+#include "core/passes/sum_pass.h"
 #include "core/passes/surface_light.h"
 #include "core/plan/plan.h"
 #include "core/plan/shape_lists.h"
 #include "core/plan/skip.h"
+#include "core/plan/split_lights.h"
 #include "core/scene/lower.h"
 #include "core/scene/words.h"
 #include "glsl/cascade.h"
@@ -65,6 +67,7 @@ struct Renderer::Impl {
           lone(options.shader_dir),
           closed(options.shader_dir),
           hrc(options.shader_dir),
+          summing(options.shader_dir),
           reference(options.shader_dir),
           exact(options.shader_dir),
           delta(options.shader_dir),
@@ -111,6 +114,7 @@ struct Renderer::Impl {
     LonePass lone;
     ClosedPass closed;
     HrcPass hrc;
+    SumPass summing;
     ReferencePass reference;
     ExactPass exact;
     DeltaPass delta;
@@ -267,6 +271,12 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         return result;
     }
 
+    // What is sampled must not shine with what is solved.
+    std::optional<SceneBuffers> sampled;
+    if (plan.exact.used && plan.hrc.active()) {
+        sampled.emplace(pack_scene(sampled_part(scene, plan.solved_shapes), plan.radiance_scale), scene.sky, plan);
+        sampled->bind();
+    }
     const SurfaceLight surfaces = plan.needs.surfaces ? SurfaceLight(plan, scene.sky, exact, delta, settings, record) : SurfaceLight();
     surfaces.bind();
     const bool marches = !plan.cascades.empty() || plan.hrc.active();
@@ -297,12 +307,14 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         ExactPass::SeeCells see_cells;
         if (plan.look.at == LookAt::skipped) see_cells = [&](const gl::Texture2D& cells, int row, int rows) { look.see_cells(cells, row, rows); };
         ExactPass::Light found;
-        exact.run(plan, scene.sky, field, settings, delta,
+        exact.run(plan, plan.method == "exact" ? scene.sky : Sky{}, field, settings, delta,
                   [&](const char* name, glm::ivec2 extent, const auto& run) { record.pass(name, extent, run); }, found, see_cells);
         radiance = std::move(found.mean);
         moment_x = std::move(found.moment_x);
         moment_y = std::move(found.moment_y);
     }
+    gl::Texture2D solved;
+    if (sampled) solved = std::move(radiance);
     if (plan.hrc.active()) radiance = render_hrc(plan, field, look, record);
     if (plan.look.at != LookAt::picture) {
         record.host("view", plan.shown.size, [&] { result.picture = look.draw(plan); });
@@ -322,6 +334,17 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
             return work;
         });
     if (plan.lone) record.pass("lone pixels", plan.lit.size, [&] { return lone.run(plan, scene.sky, field, settings, radiance); });
+    if (sampled) {
+        record.pass("sum", plan.canvas, [&] {
+            gl::Texture2D both;
+            const PassWork work = summing.run(plan, radiance, solved, settings, both);
+            settings.give(std::move(radiance));
+            settings.give(std::move(solved));
+            radiance = std::move(both);
+            return work;
+        });
+        buffers.bind();
+    }
     gl::Texture2D lights;
     // On a floor with relief lights without a size are added to what it sends up.
     const bool lit_floor = plan.floor.relief && scene.output.solids != Solids::lit;
@@ -373,7 +396,7 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     settings.give(std::move(sent_up));
 
     stats.passes = record.finish();
-    stats.gpu_bytes = plan.gpu_bytes + buffers.bytes();
+    stats.gpu_bytes = plan.gpu_bytes + buffers.bytes() + (sampled ? sampled->bytes() : 0);
     if (plan.exact.used && plan.exact.settings.largest_cell > 1) {
         double points = 0;
         for (const PassStats& pass : stats.passes) points += double(pass.points);

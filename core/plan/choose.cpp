@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/plan/choose.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -11,6 +12,8 @@ namespace {
 constexpr double kMostCost = 25'000;
 // The same for `high`, whose cascades cost four times as much and more.
 constexpr double kMostCostHigh = 100'000;
+// Of what solving all lamps takes: those that are solved may take this share.
+constexpr double kMostOfAll = 0.25;
 
 }  // namespace
 
@@ -26,6 +29,15 @@ MethodChoice choose_method(const PackedOutline& outline, Quality quality) {
     const double most = quality == Quality::high ? kMostCostHigh : kMostCost;
     if (exact_cost(outline) <= most) return {"exact", seen.str() + ": solved sooner than sampled"};
     return {"hrc", seen.str() + ": sampled sooner than solved"};
+}
+
+MethodChoice choose_split(const LightSplit& split, const PackedOutline& outline, Quality quality, const MethodChoice& sampled) {
+    const double most = std::min(most_solved_cost(quality), kMostOfAll * exact_cost(outline));
+    if (split.solved.empty() || split.share < least_solved_share() || split.cost > most) return sampled;
+    std::ostringstream reason;
+    reason << sampled.reason << "; but of " << split.lamps << " lamps the brightest " << split.solved.size() << ", "
+           << std::floor(100 * split.share) << " % of what sampling would err by, are solved";
+    return {"hybrid", reason.str()};
 }
 
 }  // namespace penumbra

@@ -13,14 +13,6 @@
 namespace penumbra {
 namespace {
 
-void darken(Shape& shape) {
-    shape.emission = Colour(0);
-    shape.gradient.clear();
-    if (shape.medium) shape.medium->emission = Colour(0);
-    auto* bitmap = std::get_if<Bitmap>(&shape.geometry);
-    if (bitmap != nullptr && !bitmap->as_albedo) bitmap->emission_scale = 0;
-}
-
 void darken(Light& light) {
     std::visit(
         [](auto& one) {
@@ -52,6 +44,14 @@ std::string holds(std::size_t count, const std::string& what) {
 }
 
 }  // namespace
+
+void darken(Shape& shape) {
+    shape.emission = Colour(0);
+    shape.gradient.clear();
+    if (shape.medium) shape.medium->emission = Colour(0);
+    auto* bitmap = std::get_if<Bitmap>(&shape.geometry);
+    if (bitmap != nullptr && !bitmap->as_albedo) bitmap->emission_scale = 0;
+}
 
 Look look_of(std::string_view view) {
     if (view == "final") return {};

@@ -32,6 +32,9 @@ Look look_of(std::string_view view);
 // The scene in which only what the view names shines (light3, shape0, sky), with the view "final". `scene` as it was sent.
 Scene contribution(const Scene& scene);
 
+// Lets a shape no longer shine; it is as opaque as before.
+void darken(Shape& shape);
+
 // Why this view cannot be had of this scene; empty: it can.
 std::string view_refused(const Scene& scene);
 

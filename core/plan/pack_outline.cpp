@@ -12,9 +12,9 @@
 #include "core/plan/closed.h"
 #include "core/plan/corners.h"
 #include "core/plan/pack.h"
+#include "core/plan/survey.h"
 #include "core/reference/boundary.h"
 #include "core/reference/sky.h"
-#include "core/reference/sweep.h"
 #include "glsl/exact.h"
 
 namespace penumbra {
@@ -182,30 +182,6 @@ private:
     Surfaces made_;
 };
 
-// Points of the view along each axis that a survey looks from.
-constexpr int kSurvey = 6;
-
-double survey_intervals(const Scene& scene, const reference::Boundary& boundary) {
-    std::vector<char> shining;
-    for (const Piece& piece : boundary.pieces()) shining.push_back(boundary.material_of(piece).shines());
-    const bool dark = reference::SkyIntegral(scene.sky).is_black();
-    reference::Sweep sweep(boundary, dark ? &shining : nullptr);
-    const ViewRect view = scene.canvas.view_or_default();
-    double intervals = 0;
-    int points = 0;
-    for (int y = 0; y < kSurvey; ++y) {
-        for (int x = 0; x < kSurvey; ++x) {
-            // Not quite regular, for scenes that are.
-            const Point p{view.x + (x + 0.5 + 0.13 * (y % 3 - 1)) * view.w / kSurvey,
-                          view.y + (y + 0.5 + 0.11 * (x % 3 - 1)) * view.h / kSurvey};
-            if (boundary.is_solid(p)) continue;
-            intervals += double(sweep.look(p, {1, 0}, 0, false).size());
-            ++points;
-        }
-    }
-    return points > 0 ? intervals / points : 0;
-}
-
 // Extent (world units) of the smallest light: of what is seen of each body.
 double smallest_light(const reference::Boundary& boundary) {
     std::map<int, reference::Box> boxes;
@@ -255,7 +231,11 @@ PackedOutline pack_outline(const Scene& scene, double radiance_scale, bool surve
     const auto vec = [](glm::dvec2 a, glm::dvec2 b) { return glm::vec4(glm::vec2(a), glm::vec2(b)); };
     out.smallest_light = smallest_light(boundary) * scale;
     out.smallest_body = smallest_body(boundary) * scale;
-    if (survey) out.mean_intervals = survey_intervals(scene, boundary);
+    if (survey) {
+        std::vector<char> shining;
+        for (const Piece& piece : boundary.pieces()) shining.push_back(boundary.material_of(piece).shines());
+        out.mean_intervals = survey_intervals(scene, boundary, reference::SkyIntegral(scene.sky).is_black() ? &shining : nullptr);
+    }
     // Elements lie on what can be seen: nothing is taken whole that is not.
     const bool in_parts = reflecting || std::any_of(boundary.pieces().begin(), boundary.pieces().end(),
                                                     [&](const Piece& piece) { return boundary.material_of(piece).slope != Colour(0); });

@@ -13,6 +13,7 @@
 #include "core/plan/pack.h"
 #include "core/plan/saving.h"
 #include "core/plan/skip.h"
+#include "core/plan/split_lights.h"
 #include "core/plan/sky.h"
 #include "core/scene/words.h"
 #include "glsl/exact.h"
@@ -148,31 +149,21 @@ void fit_hrc(Plan& plan, double peak, const DeviceLimits& limits) {
     plan.gpu_bytes += bytes;
 }
 
+// hybrid: a few lamps are solved as by `exact`, the rest is sampled as by `hrc`.
+void plan_split(Plan& plan, const Scene& scene, const LightSplit& split, const DeviceLimits& limits) {
+    plan.solved_shapes = split.solved;
+    if (split.solved.empty()) return;
+    const Scene part = solved_part(scene, split.solved);
+    PackedOutline outline = pack_outline(part, 1.0, false, kMostPieces);
+    outline.mean_intervals = split.cost / std::max(double(outline.pieces), 1.0);
+    plan.exact = plan_exact(part, std::move(outline), plan.canvas, limits.software);
+    if (split.all() && brightest(scene.sky) <= 0 && saves(scene.render, Saving::sampling)) plan.hrc = {};
+}
+
 }  // namespace
 
 std::size_t distance_iterations(int type, std::size_t edges) {
     return kIterationsPerShape + edges + (type == glsl::kShapeEllipse ? static_cast<std::size_t>(glsl::kEllipseIterations) : 0);
-}
-
-CascadeSettings cascade_settings(Quality quality) {
-    // Points of the measured front of rc (docs/benchmarks.md).
-    switch (quality) {
-        case Quality::draft: return {2.0, 1.2, 1};
-        case Quality::standard: return {1.0, 1.2, 1};
-        case Quality::high: return {0.5, 1.2, 1};
-    }
-    return {};
-}
-
-CascadeSettings rc_fix_settings(Quality quality) {
-    // Points of its own measured front (docs/methods/rc_fix.md). Cascade 0 has a probe at each pixel's centre at any quality:
-    // coarser ones take part in the last, exact stretch to each pixel, which is what a cascade -1 would be for.
-    switch (quality) {
-        case Quality::draft: return {1.0, 2.4, 1, 4.0, 18};
-        case Quality::standard: return {1.0, 1.2, 1, 2.0, 18};
-        case Quality::high: return {1.0, 0.8, 1, 1.0, 4.5};
-    }
-    return {};
 }
 
 int reference_rays(Quality quality) {
@@ -182,80 +173,6 @@ int reference_rays(Quality quality) {
         case Quality::high: return 1024;
     }
     return 256;
-}
-
-std::vector<CascadePlan> plan_cascades(glm::ivec2 canvas, double diagonal_px, const CascadeSettings& settings) {
-    const double ratio = 1.0 + 3.0 * diagonal_px / settings.interval_px;
-    // The tolerance keeps an exact power of four from growing a cascade by rounding.
-    int count = std::max(1, static_cast<int>(std::ceil(std::log2(ratio) / 2.0 - 1e-12)));
-    if (settings.far_gap_px > 0) {
-        const double directions = 2.0 * std::numbers::pi * diagonal_px / settings.far_gap_px;
-        const double base = 4.0 * settings.base_tiles * settings.base_tiles;
-        count = std::clamp(1 + static_cast<int>(std::ceil(std::log2(directions / base) / 2.0)), 1, count);
-    }
-    std::vector<CascadePlan> cascades;
-    int sky_first = 0;
-    for (int level = 0; level < count; ++level) {
-        CascadePlan c;
-        c.level = level;
-        c.spacing = level == 0 ? settings.spacing_px : std::ldexp(settings.spacing_px * settings.growth, level - 1);
-        const auto along = [&](int pixels) { return std::max(1, static_cast<int>(std::ceil(pixels / c.spacing))); };
-        c.probes = {along(canvas.x), along(canvas.y)};
-        c.first_probe = 0.5 * (glm::dvec2(canvas) - glm::dvec2(c.probes - 1) * c.spacing);
-        const int tiles = settings.base_tiles << level;
-        c.tiles = {tiles, tiles};
-        c.texture = c.probes * c.tiles;
-        c.start = settings.interval_px * (std::ldexp(1.0, 2 * level) - 1.0) / 3.0;
-        c.end = c.start + std::ldexp(settings.interval_px, 2 * level);
-        c.sky_first = sky_first;
-        sky_first += c.directions();
-        if (level == count - 1) c.end = std::max(c.end, diagonal_px);
-        cascades.push_back(c);
-    }
-    return cascades;
-}
-
-std::size_t leave_out_far(std::vector<CascadePlan>& cascades, const Extent& matters, double diagonal_px) {
-    // A ray is judged by its distance to a surface when that is less than this (glsl/lib/march.glsl, kNear).
-    constexpr double kNearSurface = 2;
-    std::size_t left_out = 0;
-    while (cascades.size() > 1) {
-        const CascadePlan& last = cascades.back();
-        double farthest = 0;
-        for (const CascadePlan* c : {&last, static_cast<const CascadePlan*>(&cascades[cascades.size() - 2])}) {
-            if (matters.empty()) break;
-            const glm::dvec2 low = c->first_probe;
-            const glm::dvec2 high = low + glm::dvec2(c->probes - 1) * c->spacing;
-            const double x = std::max(matters.x1 - low.x, high.x - matters.x0);
-            const double y = std::max(matters.y1 - low.y, high.y - matters.y0);
-            farthest = std::max(farthest, std::hypot(x, y));
-        }
-        if (!matters.empty() && last.start < farthest + kNearSurface) break;
-        cascades.pop_back();
-        cascades.back().end = std::max(cascades.back().end, diagonal_px);
-        ++left_out;
-    }
-    return left_out;
-}
-
-void keep_probes_near(std::vector<CascadePlan>& cascades, const PixelArea& lit) {
-    // Centres of what asks: pixels first, then the probes below.
-    glm::dvec2 low = glm::dvec2(lit.first) + 0.5;
-    glm::dvec2 high = glm::dvec2(lit.end()) - 0.5;
-    for (CascadePlan& c : cascades) {
-        glm::ivec2 from = lit.first;
-        glm::ivec2 to = lit.end() - 1;
-        if (c.level > 0 || c.spacing != 1.0) {
-            // The two on either side, and one more for rounding.
-            from = glm::max(glm::ivec2(glm::floor((low - c.first_probe) / c.spacing)) - 1, glm::ivec2(0));
-            to = glm::min(glm::ivec2(glm::ceil((high - c.first_probe) / c.spacing)) + 1, c.probes - 1);
-        }
-        c.first_probe += glm::dvec2(from) * c.spacing;
-        c.probes = to - from + 1;
-        c.texture = c.probes * c.tiles;
-        low = c.first_probe;
-        high = low + glm::dvec2(c.probes - 1) * c.spacing;
-    }
 }
 
 std::vector<int> plan_jumps(glm::ivec2 grid) {
@@ -320,6 +237,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         return plan;
     }
     PackedOutline outline;
+    LightSplit split;
     plan.needs.media = !scene.media.empty();
     plan.look = look_of(scene.render.view);
     plan.needs.steps = plan.look.at == LookAt::steps;
@@ -336,10 +254,14 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         if (plan.floor.relief && !(outline.fits && not_exact.empty()))
             throw DeviceError("The scene is too dense for a floor with relief, which only the method 'exact' has: " +
                               (not_exact.empty() ? "its outline has more than " + std::to_string(most_surveyed_pieces()) + " pieces." : not_exact));
-        const MethodChoice choice = !not_exact.empty()            ? MethodChoice{"hrc", not_exact}
+        MethodChoice choice = !not_exact.empty()            ? MethodChoice{"hrc", not_exact}
                                     : reflecting && outline.fits ? MethodChoice{"exact", "surfaces reflect"}
                                     : plan.floor.relief          ? MethodChoice{"exact", "the floor has relief"}
                                                                  : choose_method(outline, scene.render.quality);
+        if (choice.method == "hrc" && outline.fits && not_exact.empty() && hrc_fits(scene, plan.canvas, limits)) {
+            split = split_lights(scene, least_solved_share(), 0, most_surveyed_pieces());
+            choice = choose_split(split, outline, scene.render.quality, choice);
+        }
         plan.method = choice.method;
         plan.method_reason = choice.reason;
         if (plan.method == "hrc" && !hrc_fits(scene, plan.canvas, limits)) {
@@ -352,10 +274,18 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
             throw DeviceError("The method 'exact' cannot take this scene: its outline has more than " +
                               std::to_string(kMostPieces) + " pieces.");
     }
+    else if (plan.method == "hybrid") {
+        split = split_lights(scene, 0, most_solved_cost(scene.render.quality), kMostPieces);
+        if (split.solved.empty() && !pack_outline(scene, 1.0, false, kMostPieces).fits)
+            throw DeviceError("The method 'hybrid' cannot take this scene: its outline has more than " +
+                              std::to_string(kMostPieces) + " pieces.");
+        plan.method_reason += "; the brightest " + std::to_string(split.solved.size()) + " of " + std::to_string(split.lamps) + " lamps are solved";
+    }
     const bool brute_force = plan.method == "reference";
     const bool exact = plan.method == "exact";
     plan.bilinear_fix = plan.method == "rc_fix";
-    const bool holographic = plan.method == "hrc";
+    const bool hybrid = plan.method == "hybrid";
+    const bool holographic = plan.method == "hrc" || hybrid;
 
     double peak = brightest(scene.sky);
     bool has_bitmaps = false;
@@ -407,6 +337,11 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         plan.hrc = hrc_of(scene, plan.canvas);
     else
         plan.cascades = plan_cascades(plan.canvas, plan.grid.diagonal_px, settings);
+    if (hybrid) {
+        const double steps = double(plan.hrc.quadrants.front().levels.size());
+        plan_split(plan, scene, split, limits);
+        if (!plan.hrc.active()) leave_out("ray pieces", "all lamps are solved", pixels * steps);
+    }
     if (reflecting && !exact) {
         // What surfaces shine with is solved, whatever the method; only what meets them is sampled.
         outline = pack_outline(scene, 1.0, false, kMostPieces, true);
@@ -445,7 +380,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         const double levels = static_cast<double>(leave_out_far(plan.cascades, extent_of_shapes(scene, dark_sky, reflecting), plan.grid.diagonal_px));
         if (levels > 0) leave_out("cascades", dark_sky ? "no light is as far away" : "no shape is as far away", 4.0 * pixels * levels / (settings.spacing_px * settings.spacing_px));
     }
-    if (exact && !skip(Saving::cells)) plan.exact.settings.largest_cell = 1;
+    if ((exact || hybrid) && !skip(Saving::cells)) plan.exact.settings.largest_cell = 1;
     const bool resolved = settings.spacing_px == 1.0 && settings.base_tiles == 1;
     plan.resolve = !plan.cascades.empty() && !(resolved && skip(Saving::resolve));
     if (!plan.resolve && !plan.cascades.empty())
@@ -490,6 +425,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
     if (plan.exact.moments) plan.gpu_bytes += 2 * texel * area(plan.lit.size);
     if (plan.floor.used) plan.gpu_bytes += 16 * area(plan.lit.size) * (floor.normals ? 3 : floor.image ? 2 : 1);
     if (plan.hrc.active()) fit_hrc(plan, peak, limits);
+    if (plan.hrc.active() && plan.exact.used) plan.gpu_bytes += 16 * area(plan.canvas);  // their sum
     for (glm::vec4& light : plan.exact.outline.lights_of)
         light = glm::vec4(glm::vec3(light) / static_cast<float>(plan.radiance_scale), light.a);
     for (std::size_t i = 0; i < plan.exact.outline.surfaces.materials.size(); ++i)

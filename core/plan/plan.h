@@ -114,8 +114,9 @@ struct Plan {
     std::vector<CascadePlan> cascades;  // [0] is the nearest; empty when no light can arrive
     bool bilinear_fix = false;          // the cascades are those of `rc_fix`
     ReferencePlan reference;
-    ExactPlan exact;                    // of the method `exact`; of others, what surfaces shine with is found by it
-    HrcPlan hrc;                        // inactive unless this method runs
+    ExactPlan exact;                    // of the method `exact`; of `hybrid`, for the light of a few shapes; of others, what surfaces shine with is found by it
+    HrcPlan hrc;                        // inactive unless this method, or `hybrid`, runs
+    std::vector<int> solved_shapes;     // of `hybrid`: whose light is solved; that of all others is sampled
     DeltaPlan delta;                    // point, spot and directional lights
     FloorPlan floor;
     std::vector<glm::ivec2> closed_tiles;  // first pixels of tiles of kExactTile px that no light reaches: taken for solid

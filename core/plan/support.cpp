@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "core/plan/support.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 
 #include "core/plan/look.h"
+#include "core/plan/skip.h"
 
 namespace penumbra {
 
@@ -13,11 +15,14 @@ Problems unsupported(const Scene& scene, const Features& features) {
     const auto refuse = [&](std::string pointer, const std::string& what) {
         problems.push_back({std::move(pointer), "not_supported_yet", what + " not supported yet"});
     };
-    if (scene.render.method == "hybrid") refuse("/render/method", "the method 'hybrid' is");
+    const bool reflecting = std::any_of(scene.shapes.begin(), scene.shapes.end(), [](const Shape& shape) { return reflects(shape); });
+    if (scene.render.method == "hybrid" && scene.render.bounces > 0 && reflecting)
+        refuse("/render/bounces", "light that bounces with the method 'hybrid' is");
     for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
         if (!scene.shapes[i].medium) continue;
         const std::string medium = "/shapes/" + std::to_string(i) + "/medium";
-        if (scene.render.method == "exact") refuse("/render/method", "the method 'exact' with translucent shapes (" + medium + ") is");
+        if (scene.render.method == "exact" || scene.render.method == "hybrid")
+            refuse("/render/method", "the method '" + scene.render.method + "' with translucent shapes (" + medium + ") is");
         if (scene.render.bounces > 0) refuse("/render/bounces", "light that bounces in a scene with translucent shapes (" + medium + ") is");
         if (scene.canvas.floor.has_relief())
             refuse("/canvas/floor", "a floor with a normal_map, roughness, metallic or reflectance in a scene with translucent shapes (" + medium + ") is");

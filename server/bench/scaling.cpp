@@ -60,8 +60,9 @@ void measure_scaling(const ScalingSettings& settings, RenderBackend& backend, co
                 std::vector<double> cpu;
                 RenderStats stats;
                 try {
-                    // The first renders of a process and of a kind of scene compile.
-                    for (int i = 0; i < (step == curve.steps.front() ? 3 : 1); ++i) backend.render(scene, {});
+                    // The first renders of a process and of a kind of scene compile: a second or two, nothing beside long ones.
+                    const int first_renders = step == curve.steps.front() ? 3 : spent_ms > 1e4 ? 0 : 1;
+                    for (int i = 0; i < first_renders; ++i) backend.render(scene, {});
                     for (int i = 0; i < settings.repeats; ++i) {
                         const double start = process_cpu_ms();
                         stats = backend.render(scene, {}).stats;

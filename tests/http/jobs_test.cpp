@@ -20,7 +20,7 @@ nlohmann::json begin(const Service& service, const std::string& scene) {
     EXPECT_TRUE(result);
     EXPECT_EQ(result->status, 202) << result->body;
     const auto json = nlohmann::json::parse(result->body);
-    EXPECT_EQ(result->get_header_value("Location"), json["links"]["self"]);
+    EXPECT_EQ(result->get_header_value("Location"), json["links"]["self"].get<std::string>());
     return json;
 }
 nlohmann::json tell(const Service& service, const nlohmann::json& job) {

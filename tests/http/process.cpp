@@ -131,7 +131,8 @@ std::vector<pid_t> children_of(pid_t parent) {
 }
 
 int wait_for_port(const std::string& port_file) {
-    for (int i = 0; i < 1000; ++i) {
+    // A first start compiles, on a slow machine or under sanitizers for more than 20 s.
+    for (int i = 0; i < 4000; ++i) {
         const std::string text = read_file(port_file);
         if (text.ends_with('\n')) return std::atoi(text.c_str());
         std::this_thread::sleep_for(std::chrono::milliseconds(20));

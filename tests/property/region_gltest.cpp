@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A part of the canvas is the crop of the whole picture: to the byte by `exact`, `hrc`, `reference` and where the picture is
+// A part of the canvas is the crop of the whole picture: to the byte by `exact`, `hrc`, `hybrid`, `reference` and where the picture is
 // constant; by `rc` and `rc_fix`, whose textures are smaller, but for the rounding of texture coordinates.
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ void expect_crop(Scene scene, PixelRect region, double bound, const std::string&
 }
 
 TEST(Region, IsTheCropOfThePicture) {
-    for (const char* method : {"exact", "hrc", "rc", "rc_fix", "reference", "auto"}) {
+    for (const char* method : {"exact", "hrc", "hybrid", "rc", "rc_fix", "reference", "auto"}) {
         for (const Quality quality : {Quality::draft, Quality::standard, Quality::high}) {
             if (quality != Quality::standard && std::string(method) != "rc" && std::string(method) != "exact") continue;
             Scene scene = lit_scene(118, 91);

@@ -48,7 +48,7 @@ double share_beyond(const ImageF& a, const ImageF& b, double bound) {
     return double(beyond) / double(a.data.size());
 }
 
-void expect_harmless(Scene scene, const std::string& what, const std::vector<const char*>& methods = {"rc", "hrc", "exact"}) {
+void expect_harmless(Scene scene, const std::string& what, const std::vector<const char*>& methods = {"rc", "hrc", "exact", "hybrid"}) {
     for (const char* method : methods) {
         scene.render.method = method;
         scene.render.skip = Skip::all;

@@ -63,7 +63,7 @@ std::string rendered_by_program(const std::string& file, const Environment& envi
 
 TEST(Determinism, AnyNumberOfThreadsGivesTheSameBytes) {
     TemporaryFolder folder;
-    for (const char* method : {"exact", "hrc", "rc_fix", "rc", "reference"}) {
+    for (const char* method : {"exact", "hrc", "hybrid", "rc_fix", "rc", "reference"}) {
         const std::string file = folder.write(std::string(method) + ".json", scene_text(as(crowd(), {method, Quality::draft})));
         const std::string two = rendered_by_program(file, {{"LP_NUM_THREADS", "2"}});
         ASSERT_GT(two.size(), 150u * 110 * 12) << method;

@@ -571,7 +571,10 @@ TEST(Unsupported, NamesEachKeyAndWhatItHolds) {
         EXPECT_NE(problems[0].message.find("not supported"), std::string::npos) << problems[0].message;
         EXPECT_NE(problems[0].message.find(named), std::string::npos) << problems[0].message;
     };
-    expect_refused("/render/method", "'hybrid'", [](Scene& s) { s.render.method = "hybrid"; });
+    expect_refused("/render/method", "'hybrid'", [](Scene& s) {
+        s.render.method = "hybrid";
+        s.shapes.emplace_back().medium = Medium{};
+    });
     expect_refused("/render/view", "'probes'", [](Scene& s) {
         s.render.view = "probes";
         s.render.method = "exact";
@@ -582,7 +585,8 @@ TEST(Unsupported, NamesEachKeyAndWhatItHolds) {
 
 TEST(Unsupported, NamesAllAtOnce) {
     Scene scene = scene_of(8, 8);
-    scene.render.method = "hybrid";
+    scene.render.method = "exact";
+    scene.render.view = "probes";
     scene.output.tonemap = "tony";
     EXPECT_EQ(unsupported(scene).size(), 2u);
     EXPECT_EQ(unsupported(scene, {.tone_lut = true}).size(), 1u);
