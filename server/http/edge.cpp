@@ -2,7 +2,6 @@
 #include "server/http/edge.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 
 #include <fcntl.h>
@@ -11,7 +10,6 @@
 #include <pthread.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -24,8 +22,6 @@ constexpr std::size_t kBlockBytes = 64u << 10;
 constexpr int kBlocksInTurn = 4;     // read from one connection before the others have their turn
 constexpr int kAcceptedInTurn = 64;
 constexpr int kEventsBetweenAccepts = 16;  // who comes newly, a probe perhaps, does not wait for a turn of all others
-// Answers that take longer wait for a render, or are long work: others may begin.
-constexpr milliseconds kSoonDone{5};
 // A client that is refused in the middle of its body reads the answer only when it stops sending; and closing with something unread
 // would destroy the answer on its way (RST).
 constexpr milliseconds kLingerTime{2000};
@@ -40,108 +36,14 @@ constexpr milliseconds kPatienceWhenFull{1000};
 constexpr milliseconds kDrainTime{3000};
 constexpr milliseconds kFreshDrainTime{200};
 constexpr milliseconds kAcceptPause{50};  // when there are no more file numbers
-// File numbers for what are not connections: workers, fonts, shaders, the log.
-constexpr std::size_t kOtherFiles = 256;
+// File numbers for what is not in the number of connections: those that end, workers, fonts, shaders, the log.
+constexpr std::size_t kOtherFiles = kMostLingering + kMostRefusals + 256;
 
 constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
 
 bool would_block(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
 
-bool same_word(std::string_view a, std::string_view lower) {
-    return a.size() == lower.size() && std::equal(a.begin(), a.end(), lower.begin(), [](char x, char y) {
-               return std::tolower(static_cast<unsigned char>(x)) == y;
-           });
-}
-
-// Raises the process's bound on files as far as it may; how many connections that leaves room for.
-std::size_t room_for_connections(std::size_t wanted) {
-    rlimit limit{};
-    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return wanted;
-    const rlim_t needed = wanted + 2 * kMostLingering + kOtherFiles;
-    if (limit.rlim_cur < needed) {
-        limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, needed);
-        ::setrlimit(RLIMIT_NOFILE, &limit);
-        ::getrlimit(RLIMIT_NOFILE, &limit);
-    }
-    if (limit.rlim_cur >= needed) return wanted;
-    const std::size_t files = limit.rlim_cur;
-    return std::clamp<std::size_t>(files > kOtherFiles ? files - kOtherFiles : 0, 16, wanted);
-}
-
 }  // namespace
-
-// ---- Held
-
-void Held::change(std::size_t& counted, std::size_t now) {
-    bytes_ += now - counted;  // unsigned: also when it becomes less
-    counted = now;
-}
-
-// ---- Pool
-
-Pool::Pool(const char* name, std::size_t most_threads, std::function<void(Connection&)> work)
-    : name_(name),
-      most_threads_(most_threads),
-      most_at_once_(std::min<std::size_t>(most_threads, std::max(2u, std::thread::hardware_concurrency()))),
-      work_(std::move(work)) {}
-
-bool Pool::may_begin() const {
-    const Clock::time_point now = Clock::now();
-    return stopping_ || std::size_t(std::count_if(begun_.begin(), begun_.end(), [&](Clock::time_point begun) { return now - begun < kSoonDone; })) < most_at_once_;
-}
-
-void Pool::begin_another() {
-    if (waiting_.empty() || !may_begin()) return;
-    if (idle_ > 0) {
-        changed_.notify_one();
-    } else if (threads_.size() < most_threads_) {
-        threads_.emplace_back([this] { run(); });
-    }
-}
-
-void Pool::add(Connection& connection, bool first) {
-    const std::lock_guard lock(mutex_);
-    first ? waiting_.push_front(&connection) : waiting_.push_back(&connection);
-    begin_another();
-}
-
-bool Pool::nudge() {
-    const std::lock_guard lock(mutex_);
-    begin_another();
-    return !waiting_.empty();
-}
-
-void Pool::stop() {
-    {
-        const std::lock_guard lock(mutex_);
-        stopping_ = true;
-    }
-    changed_.notify_all();
-    for (std::thread& thread : threads_) thread.join();
-    threads_.clear();
-}
-
-void Pool::run() {
-    ::pthread_setname_np(::pthread_self(), name_);
-    std::unique_lock lock(mutex_);
-    while (true) {
-        ++idle_;
-        changed_.wait(lock, [&] { return stopping_ || (!waiting_.empty() && may_begin()); });
-        --idle_;
-        if (waiting_.empty()) return;
-        Connection& connection = *waiting_.front();
-        waiting_.pop_front();
-        const Clock::time_point begun = Clock::now();
-        begun_.push_back(begun);
-        begin_another();
-        lock.unlock();
-        work_(connection);
-        lock.lock();
-        begun_.erase(std::find(begun_.begin(), begun_.end(), begun));
-    }
-}
-
-// ---- Edge
 
 Edge::Edge(const EdgeLimits& limits, Work work)
     : limits_(limits),
@@ -155,7 +57,7 @@ Edge::Edge(const EdgeLimits& limits, Work work)
 Edge::~Edge() { stop(); }
 
 void Edge::start(int listener) {
-    most_connections_ = room_for_connections(most_connections_);
+    most_connections_ = room_for_connections(most_connections_, kOtherFiles);
     listener_ = listener;
     ::fcntl(listener_, F_SETFL, ::fcntl(listener_, F_GETFL) | O_NONBLOCK);
     ::fcntl(listener_, F_SETFD, FD_CLOEXEC);
@@ -205,7 +107,7 @@ void Edge::wake() const {
 
 int Edge::timeout() {
     Clock::time_point next = std::min(next_deadline_, accept_again_);
-    if (requests_.nudge()) next = std::min(next, Clock::now() + kSoonDone);
+    if (requests_.nudge()) next = std::min(next, Clock::now() + Pool::kSoonDone);
     if (next == Clock::time_point::max()) return -1;
     return int(std::clamp<milliseconds::rep>(std::chrono::ceil<milliseconds>(next - Clock::now()).count(), 0, 60'000));
 }
@@ -434,7 +336,7 @@ bool Edge::ask(Connection& connection, bool more_is_there) {
     reader.go_on();
     if (reader.state() != RequestReader::State::body || more_is_there || head.version != "HTTP/1.1") return true;
     const auto expected = head.values("Expect");
-    if (expected.size() != 1 || !same_word(expected[0], "100-continue")) return true;
+    if (expected.size() != 1 || !same_name(expected[0], "100-continue")) return true;
     if (::send(connection.socket, kContinue.data(), kContinue.size(), MSG_NOSIGNAL | MSG_DONTWAIT) == ssize_t(kContinue.size())) return true;
     close(connection);
     return false;
@@ -481,26 +383,11 @@ void Edge::take_back(Connection& connection) {
     wake();
 }
 
-bool Edge::send_later(Connection& connection, std::string_view bytes) {
-    if (!held_.has_room(bytes.size())) return false;
-    connection.unsent.append(bytes);
-    held_.change(connection.held_unsent, connection.unsent.size());
-    return true;
-}
-
-void Edge::has_sent(Connection& connection, std::size_t bytes) {
-    connection.sent += bytes;
-    if (connection.sent < connection.unsent.size()) return;
-    connection.unsent = {};
-    connection.sent = 0;
-    held_.change(connection.held_unsent, 0);
-}
-
 void Edge::write(Connection& connection) {
-    for (std::string_view rest = unsent(connection); !rest.empty(); rest = unsent(connection)) {
+    for (std::string_view rest = connection.left(); !rest.empty(); rest = connection.left()) {
         const ssize_t count = ::send(connection.socket, rest.data(), rest.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         if (count >= 0) {
-            has_sent(connection, std::size_t(count));
+            held_.has_sent(connection, std::size_t(count));
             continue;
         }
         would_block(errno) ? watch(connection, EPOLLOUT) : close(connection);

@@ -5,20 +5,18 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
-#include <deque>
 #include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
-#include <string>
 #include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "server/http/request_reader.h"
+#include "server/http/connection.h"
+#include "server/http/pool.h"
 
 namespace penumbra {
 
@@ -30,75 +28,6 @@ struct EdgeLimits {
     std::size_t threads = 0;
     std::size_t waiting_connections = 0;  // beside one for each thread
     std::size_t held_bytes = 0;           // of requests and answers, of all connections
-};
-
-// A connection belongs to the edge's thread, or, while its request is being answered, to one thread of a pool.
-struct Connection {
-    using Clock = std::chrono::steady_clock;
-    enum class State { reading, answering, writing, lingering, closed };
-
-    Connection(int the_socket, const RequestLimits& limits) : socket(the_socket), reader(limits) {}
-
-    const int socket;
-    State state = State::reading;
-    RequestReader reader;
-    std::string rest;     // what came after the request
-    std::string unsent;   // of the answer, from `sent` on
-    std::size_t sent = 0;
-    Clock::time_point start;     // the first byte of the request
-    Clock::time_point since;     // of the present state
-    Clock::time_point deadline;  // of the same
-    bool fresh = true;    // has sent nothing yet
-    bool go_on = false;   // after the answer
-    bool probe = false, at_once = false;  // as judged
-    bool watched = false;
-    Fault refusal = Fault::none;  // of the connection itself
-    std::size_t held = 0, held_unsent = 0;  // bytes, as they are counted
-    std::size_t place = 0;
-    std::promise<void>* ended = nullptr;
-};
-
-// Bytes that all connections hold together.
-class Held {
-public:
-    explicit Held(std::size_t most) : most_(most) {}
-    void change(std::size_t& counted, std::size_t now);
-    bool over() const { return bytes_ > most_; }
-    bool has_room(std::size_t bytes) const { return bytes_ + bytes <= most_; }
-    std::size_t bytes() const { return bytes_; }
-
-private:
-    const std::size_t most_;
-    std::atomic<std::size_t> bytes_{0};
-};
-
-// Threads, made when needed, that take connections one after another. Few begin at a time: more than there are processors would only
-// keep each other, and the edge, from them. Who is at work for longer waits for a render, and another may begin.
-class Pool {
-public:
-    Pool(const char* name, std::size_t most_threads, std::function<void(Connection&)> work);  // the name is for `top -H`
-    ~Pool() { stop(); }
-    void add(Connection& connection, bool first);
-    bool nudge();  // false when nobody waits; to be called now and then while somebody does
-    void stop();  // when all is done
-
-private:
-    using Clock = Connection::Clock;
-
-    void run();
-    void begin_another();
-    bool may_begin() const;
-
-    const char* const name_;
-    const std::size_t most_threads_, most_at_once_;
-    const std::function<void(Connection&)> work_;
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    std::deque<Connection*> waiting_;
-    std::vector<std::thread> threads_;
-    std::vector<Clock::time_point> begun_;  // of each thread that is at work
-    std::size_t idle_ = 0;
-    bool stopping_ = false;
 };
 
 class Edge {
@@ -126,10 +55,7 @@ public:
     void drain();  // connections end after their present request
     void stop();   // takes no more, and returns when all is answered
 
-    // For who answers: what the edge's thread is to send when the answer is complete. False: there is no room for it.
-    bool send_later(Connection& connection, std::string_view bytes);
-    std::string_view unsent(const Connection& connection) const { return std::string_view(connection.unsent).substr(connection.sent); }
-    void has_sent(Connection& connection, std::size_t bytes);
+    Held& held() { return held_; }
     std::size_t most_connections() const { return most_connections_; }
 
 private:

@@ -88,17 +88,17 @@ ssize_t GuardedStream::write(const char* data, std::size_t size) {
     answered_ = true;
     std::string_view rest(data, size);
     while (!rest.empty()) {
-        const std::string_view unsent = edge_.unsent(connection_);  // comes first
+        const std::string_view unsent = connection_.left();  // comes first
         const std::string_view next = unsent.empty() ? rest : unsent;
         const ssize_t count = ::send(connection_.socket, next.data(), next.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         if (count >= 0) {
-            unsent.empty() ? rest.remove_prefix(std::size_t(count)) : edge_.has_sent(connection_, std::size_t(count));
+            unsent.empty() ? rest.remove_prefix(std::size_t(count)) : held_.has_sent(connection_, std::size_t(count));
             continue;
         }
         if (errno == EINTR) continue;
         if (errno != EAGAIN && errno != EWOULDBLOCK) return -1;
         // What a slow reader does not take yet waits without a thread; but not parts, nor what there is no room for.
-        if (!exchange_.streaming && edge_.send_later(connection_, rest)) break;
+        if (!exchange_.streaming && held_.send_later(connection_, rest)) break;
         if (!wait_for(connection_.socket, POLLOUT, until(response_deadline_))) return -1;
         if (until(response_deadline_).count() <= 0) return -1;
     }
@@ -156,7 +156,7 @@ bool GuardedServer::answer(Connection& connection) {
     exchange.expects_body = reader.expects_body();
     exchange.body_read = reader.has_body();
     exchange.body = reader.take_body();
-    GuardedStream stream(connection, edge_, limits_.response_time, exchange);
+    GuardedStream stream(connection, edge_.held(), limits_.response_time, exchange);
     exchange.client_gone = [&stream] { return stream.client_gone(); };
     t_exchange = &exchange;
     const bool go_on = reader.has_head() && process(stream, exchange);

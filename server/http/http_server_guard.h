@@ -43,8 +43,8 @@ std::string why_not_bound(const std::string& host, int error);
 // A request's head and the way of its answer, as cpp-httplib wants them. The body goes by the exchange.
 class GuardedStream final : public httplib::Stream {
 public:
-    GuardedStream(Connection& connection, Edge& edge, std::chrono::milliseconds response_time, const Exchange& exchange)
-        : connection_(connection), edge_(edge), response_time_(response_time), exchange_(exchange) {}
+    GuardedStream(Connection& connection, Held& held, std::chrono::milliseconds response_time, const Exchange& exchange)
+        : connection_(connection), held_(held), response_time_(response_time), exchange_(exchange) {}
 
     bool answered() const { return answered_; }
     // Whether the client has closed its side. One that only says that it has nothing more to say counts as gone.
@@ -62,7 +62,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     Connection& connection_;
-    Edge& edge_;
+    Held& held_;
     const std::chrono::milliseconds response_time_;
     const Exchange& exchange_;
     std::size_t head_at_ = 0;

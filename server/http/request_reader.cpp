@@ -14,12 +14,6 @@ constexpr int kMostDigits = 15;
 // Room for a body is made at once when so much of it has come, not when it is promised.
 constexpr std::size_t kWorthReserving = 1u << 20;
 
-bool same_name(std::string_view a, std::string_view b) {
-    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
-               return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
-           });
-}
-
 int hex_digit(char c) {
     if (c >= '0' && c <= '9') return c - '0';
     if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -35,6 +29,12 @@ std::string_view next_line(std::string_view& text) {
 }
 
 }  // namespace
+
+bool same_name(std::string_view a, std::string_view b) {
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
+               return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
+           });
+}
 
 RequestHead::RequestHead(std::string_view text) {
     std::string_view line = next_line(text);

@@ -22,6 +22,9 @@ struct RequestLimits {
     std::size_t framed_bytes = 0;  // of a body with its chunk framing
 };
 
+// Whatever their case.
+bool same_name(std::string_view a, std::string_view b);
+
 // Views into the text of a head.
 struct RequestHead {
     std::string_view method, target, version;
