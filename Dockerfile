@@ -14,6 +14,7 @@ COPY scripts/common.sh scripts/setup scripts/
 RUN scripts/setup --build-only
 COPY CMakeLists.txt CMakePresets.json ./
 COPY cmake cmake
+COPY docs/openapi.json docs/scene.schema.json docs/
 COPY glsl glsl
 COPY core core
 COPY server server
@@ -25,14 +26,17 @@ FROM debian:trixie-slim
 LABEL org.opencontainers.image.title="penumbra" \
       org.opencontainers.image.description="A headless render service for light in flatland" \
       org.opencontainers.image.licenses="MIT"
-# Only what the program needs to run. Lists, logs and manuals are of no use here.
-RUN --mount=type=bind,source=scripts,target=/setup \
-    /setup/setup --run-only \
-    && rm -rf /var/lib/apt/lists/* /var/cache/apt/* /var/cache/debconf/* /var/log/* \
+# Only what the program needs to run. Lists, logs and manuals are of no use here. (A bind mount instead of the copy would not do: not
+# every builder makes the layer anew when what it shows has changed.)
+COPY scripts/common.sh scripts/setup /setup/
+RUN /setup/setup --run-only \
+    && rm -rf /setup /var/lib/apt/lists/* /var/cache/apt/* /var/cache/debconf/* /var/log/* \
         /usr/share/doc/* /usr/share/man/* /usr/share/locale/* \
     && install -d -m 1777 /var/cache/penumbra
 COPY LICENSE /usr/share/doc/penumbra/LICENSE
 COPY --from=build /src/build/release/penumbra /usr/local/bin/penumbra
+# Ends the build when a library is missing.
+RUN ["penumbra", "--version"]
 
 # The one path that is written to: compiled shaders, a few hundred KB. Give it a tmpfs when the root is
 # read-only; without a writable path each start compiles anew (under a second more).
@@ -44,6 +48,6 @@ USER 10001:10001
 EXPOSE 8080
 HEALTHCHECK --interval=30s --timeout=5s --start-period=30s --retries=3 \
     CMD ["penumbra", "health"]
-# One process without children that handles its signals: it needs no init in front.
+# It handles its signals and waits for the workers that it starts: it needs no init in front.
 ENTRYPOINT ["penumbra"]
 CMD ["serve"]

@@ -53,6 +53,9 @@ namespace {
 // Two renders of 4096 x 4096.
 constexpr std::size_t kPoolBytes = std::size_t(1) << 30;
 
+// Threads of the solver that share four points.
+constexpr int kSolverLanesOfGpu = 4;
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -86,6 +89,9 @@ struct Renderer::Impl {
         info.max_group_invocations = gl_info.max_group_invocations;
         info.max_loop_iterations = gl::measure_loop_limit(options.shader_dir);
         limits = device_limits(info.max_texture_side, info.max_texture_buffer_texels, info.max_loop_iterations, gl_info.software);
+        const bool long_loops = !gl_info.software && info.max_loop_iterations == 0;
+        if (long_loops) exact.allow_long_loops();
+        exact.share_sectors(options.solver_lanes > 0 ? options.solver_lanes : long_loops ? kSolverLanesOfGpu : 1);
         // About 10 ms a dispatch on two cores of llvmpipe; a GPU takes a hundred times that.
         const std::size_t factor = gl_info.software ? 1 : 128;
         settings = {factor * 6'000'000, factor * 300'000, factor * 1'000'000, &textures};
@@ -456,35 +462,6 @@ RenderResult Renderer::render(const Scene& given, const StopCheck& stop) {
         if (scene.render.method != "auto") throw;
         return impl_->render(scene, problem.what());
     }
-}
-
-std::string Renderer::self_test() {
-    // A lamp of radiance 1 under a grey sky: far from the lamp its share is asin(R / r) / pi.
-    Scene scene;
-    scene.canvas.width = 48;
-    scene.canvas.height = 48;
-    scene.sky.radiance = Colour(0.25);
-    scene.output.format = "pfm";
-    const ImageF open = std::get<ImageF>(render(scene).picture);
-    for (const float value : open.data)
-        if (!(std::abs(value - 0.25f) < 1e-4f))
-            return "A uniform sky of radiance 0.25 rendered as " + std::to_string(value) + ".";
-    Shape lamp;
-    lamp.geometry = Circle{{24, 24}, 6};
-    lamp.emission = Colour(1);
-    scene.shapes.push_back(lamp);
-    const ImageF lit = std::get<ImageF>(render(scene).picture);
-    double mean = 0;
-    double expected = 0;
-    for (int x = 0; x < 48; ++x) {
-        const double distance = std::hypot(x + 0.5 - 24.0, 0.5 - 24.0);
-        const double share = std::asin(6.0 / distance) / std::numbers::pi;
-        mean += double(*lit.at(x, 0)) / 48;
-        expected += (share + 0.25 * (1 - share)) / 48;
-    }
-    if (!(std::abs(mean / expected - 1) < 0.05))
-        return "A disc under a grey sky rendered as " + std::to_string(mean) + " instead of " + std::to_string(expected) + ".";
-    return {};
 }
 
 std::vector<DeviceListing> Renderer::list_devices() {

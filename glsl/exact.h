@@ -9,6 +9,7 @@ namespace penumbra::glsl {
 const int kExactGroupX = 64;  // Mesa 22 vectorises along x only
 const int kExactGroupY = 1;
 const int kExactSolveGroupX = 32;
+const int kExactLanes = 1;      // threads of the solver that share a job, sector by sector: more on a GPU
 const int kExactParamsBinding = 0;
 
 // Pixels across a tile, whose points share lists, and across the largest cells. The last tiles' points include those of the

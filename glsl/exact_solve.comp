@@ -1,13 +1,13 @@
 // Solves points: for each, the pieces of outline that it sees, as intervals of direction, and from them its mean radiance,
 // how that changes along x and y, a bound on its third derivatives, and a signature of what is seen. Nothing is sampled.
-// One thread is four points of a tile. docs/methods/exact-gpu.md tells the method.
+// One thread is four points of a tile; with kExactLanes, each takes a part of their sectors, and the first adds up. docs/methods/exact-gpu.md tells the method.
 //
 // Within a sector a direction is told by its key, the tangent of its angle from the sector's axis: axis + key * side.
 // The walk goes from event to event: at each it finds the nearest piece (pieces never cross) and the next event.
 #version 430 core
 #include "exact.h"
 
-layout(local_size_x = kExactSolveGroupX, local_size_y = kExactGroupY) in;
+layout(local_size_x = kExactSolveGroupX, local_size_y = kExactLanes) in;
 layout(std140, binding = kExactParamsBinding) uniform Params { ExactParams params; };
 layout(binding = kExactDistanceUnit) uniform sampler2D distance_texture;
 layout(binding = kExactHeadsUnit) uniform usamplerBuffer heads;
@@ -36,8 +36,8 @@ const int kMoment = 0;    // what radiance is weighted by: 0: nothing; 1, 2: the
 
 const float kLookAhead = 1e-4;  // pieces that start at one corner are told apart a little further on
 const float kTwoPi = 6.283185307179586;
-// Loop iterations of one dispatch, under the 65,535 after which Mesa 22 ends all loops of a vector of eight. A point that
-// has spent them goes on in the next.
+// Loop iterations of one dispatch, under the 65,535 after which Mesa 22 ends all loops of a vector of eight; more where the driver ends
+// none. A point that has spent them goes on in the next.
 const int kBudget = 30000;
 const float kNone = -1.0;       // nothing in this direction: the sky
 const float kUnknown = -2.0;
@@ -279,6 +279,8 @@ void change(bvec4 changed, float sector_angle) {
     top_id = uvec4(changed.x ? id.x : top_id.x, changed.y ? id.y : top_id.y, changed.z ? id.z : top_id.z, changed.w ? id.w : top_id.w);
 }
 
+#include "lib/exact_lanes.glsl"
+
 int sectors_done(ivec2 point) { return params.continues != 0 ? int(imageLoad(slope_y_image, point).a) : 0; }
 
 // What a point has gathered: sums while it is not done, means then.
@@ -297,9 +299,10 @@ ivec2 local_point(int first, int index, int count) {
 ivec2 image_of(float element) { return ivec2(int(element) % kExactNodeRow, int(element) / kExactNodeRow); }
 
 // Four points of one tile, the last of them repeated: where they are in the images, and which are inside of shapes.
-void solve(int tile_index, ivec2 p0, ivec2 p1, ivec2 p2, ivec2 p3, bvec4 solid) {
-    int s = sectors_done(p0);
-    if (s >= params.sectors) return;
+// With lanes a job is done in one dispatch; `without_job`: there is none, but its lanes must meet the others.
+void solve(int tile_index, ivec2 p0, ivec2 p1, ivec2 p2, ivec2 p3, bvec4 solid, bool without_job) {
+    int s = kExactLanes > 1 ? lane() : sectors_done(p0);
+    if (kExactLanes == 1 && s >= params.sectors) return;
     sum_r = vec4(0.0);
     sum_g = vec4(0.0);
     sum_b = vec4(0.0);
@@ -311,7 +314,7 @@ void solve(int tile_index, ivec2 p0, ivec2 p1, ivec2 p2, ivec2 p3, bvec4 solid) 
     slope_y_b = vec4(0.0);
     third = vec4(0.0);
     signature = uvec4(0u);
-    if (params.continues != 0) {
+    if (kExactLanes == 1 && params.continues != 0) {
         // The sums go on where they were: in how many dispatches they are made shows in no digit.
         vec4 v0 = imageLoad(value_image, p0), v1 = imageLoad(value_image, p1), v2 = imageLoad(value_image, p2), v3 = imageLoad(value_image, p3);
         sum_r = vec4(v0.r, v1.r, v2.r, v3.r);
@@ -336,8 +339,10 @@ void solve(int tile_index, ivec2 p0, ivec2 p1, ivec2 p2, ivec2 p3, bvec4 solid) 
     }
     int budget = kBudget;
     int list = tile_index * params.sectors;
-    if (all(solid)) s = params.sectors;
-    for (; s < params.sectors; ++s) {
+    bool spent = false;
+    if (all(solid) || without_job) s = params.sectors;
+    for (; s < params.sectors; s += kExactLanes) {
+        if (kExactLanes > 1) budget = kBudget;
         uvec4 head = texelFetch(heads, list + s);
         // Each entry starts and ends at most one interval, and each step of the walk asks every entry.
         int most = int((head.y & 0xffffu) + (head.z & 0xffffu) + (head.w & 0xffu) + ((head.w >> 16) & 0xffu));
@@ -420,6 +425,14 @@ void solve(int tile_index, ivec2 p0, ivec2 p1, ivec2 p2, ivec2 p3, bvec4 solid) 
                 signature += uvec4(counts.x ? mixed(pair.x) : 0u, counts.y ? mixed(pair.y) : 0u, counts.z ? mixed(pair.z) : 0u, counts.w ? mixed(pair.w) : 0u);
             }
         }
+        if (kExactLanes > 1) spent = spent || budget <= 0;
+    }
+    if (kExactLanes > 1) {
+        if (spent) atomicAdd(counters[kExactCountSpent], 1u);
+        add_up_lanes();
+        if (lane() > 0 || without_job) return;
+        s = params.sectors;
+        budget = kBudget;
     }
 
     // A list that takes more than a whole budget is cut off.
@@ -432,7 +445,7 @@ void solve(int tile_index, ivec2 p0, ivec2 p1, ivec2 p2, ivec2 p3, bvec4 solid) 
 }
 
 // Of the points that a tile asks for.
-void solve_points(int tile_index, int first, int count) {
+void solve_points(int tile_index, int first, int count, bool without_job) {
     int row = tile_index / params.tiles.x;
     ivec2 origin = ivec2(tile_index - row * params.tiles.x, row) * kExactTile;
     int at = params.first_point + tile_index * params.tile_points;
@@ -449,30 +462,32 @@ void solve_points(int tile_index, int first, int count) {
     ivec2 end = textureSize(distance_texture, 0) - 1;
     vec4 room = vec4(texelFetch(distance_texture, min(x0 + params.border, end), 0).r, texelFetch(distance_texture, min(x1 + params.border, end), 0).r,
                      texelFetch(distance_texture, min(x2 + params.border, end), 0).r, texelFetch(distance_texture, min(x3 + params.border, end), 0).r);
-    solve(tile_index, p0, p1, p2, p3, lessThanEqual(room, vec4(0.0)));
+    solve(tile_index, p0, p1, p2, p3, lessThanEqual(room, vec4(0.0)), without_job);
 }
 
 // Of the elements of surfaces.
-void solve_nodes(int tile_index, int first) {
+void solve_nodes(int tile_index, int first, bool without_job) {
     vec4 n0 = texelFetch(nodes, 2 * first), n1 = texelFetch(nodes, 2 * first + 2), n2 = texelFetch(nodes, 2 * first + 4), n3 = texelFetch(nodes, 2 * first + 6);
     px = vec4(n0.x, n1.x, n2.x, n3.x);
     py = vec4(n0.y, n1.y, n2.y, n3.y);
     normal_x = vec4(n0.z, n1.z, n2.z, n3.z);
     normal_y = vec4(n0.w, n1.w, n2.w, n3.w);
     solve(tile_index, image_of(texelFetch(nodes, 2 * first + 1).r), image_of(texelFetch(nodes, 2 * first + 3).r),
-          image_of(texelFetch(nodes, 2 * first + 5).r), image_of(texelFetch(nodes, 2 * first + 7).r), bvec4(false));
+          image_of(texelFetch(nodes, 2 * first + 5).r), image_of(texelFetch(nodes, 2 * first + 7).r), bvec4(false), without_job);
 }
 
 void main() {
-    int index = int(gl_GlobalInvocationID.x);
+    int index = int(gl_GlobalInvocationID.x) + params.origin.y * params.extent.x;
+    int count = kNodes != 0 ? params.jobs : int(counters[kExactCountLevel + 4 * params.level]);
+    bool without_job = index >= count;
+    if (kExactLanes == 1 && without_job) return;
+    // Lanes without a job look at the first one.
+    if (kExactLanes > 1 && without_job) index = 0;
+    uint job = texelFetch(jobs, index).r;
     if (kNodes != 0) {
-        index += params.origin.y * params.extent.x;
-        if (index >= params.jobs) return;
-        solve_nodes(int(texelFetch(jobs, index).r), 4 * index);
+        solve_nodes(int(job), 4 * index, without_job);
         return;
     }
-    if (index >= int(counters[kExactCountLevel + 4 * params.level])) return;
-    uint job = texelFetch(jobs, index).r;
     int tile = int(job & 0xffffffu);
-    solve_points(tile, 4 * int(job >> 24), int(counters[params.first_count + tile]));
+    solve_points(tile, 4 * int(job >> 24), int(counters[params.first_count + tile]), without_job);
 }

@@ -2,6 +2,7 @@
 // What the files of the method `exact` share.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +14,19 @@ namespace penumbra {
 
 inline constexpr int kLevels = 4;  // cells of 8, 4, 2 and 1 pixels
 
-// Iterations that the solver spends on one point in one dispatch at most (exact_solve.comp).
-inline constexpr std::uint64_t kMostWork = 30'000;
+// Iterations that the solver spends on one point in one dispatch at most (kBudget of exact_solve.comp): under what drivers allow that
+// end long loops, or a tenth of a second of a GPU.
+inline constexpr std::int64_t kMostWork = 30'000, kMostWorkOfLongLoops = 1'000'000;
+
+// How many dispatches finish every point: a list takes `list_work` iterations at most, one after another of the `sectors` lists of a
+// point are asked, and each dispatch begins no list that might not end in it.
+inline int solver_dispatches(std::int64_t list_work, int sectors, std::int64_t budget) {
+    if (2 * list_work > budget) return sectors;
+    return static_cast<int>(std::min<std::int64_t>(sectors, list_work * sectors / (budget - list_work) + 1));
+}
+
+// Iterations, by their bound, of the groups that one dispatch covers; and groups, however long: a device has some threads.
+inline constexpr std::uint64_t kSolverSlice = 500'000, kFewestGroups = 16;
 
 inline int divided_up(int a, int b) { return (a + b - 1) / b; }
 
@@ -47,8 +59,15 @@ struct ExactPass::Band {
     gl::Texture2D value, slope_x, slope_y, leaf, lights;
     glm::ivec2 coarse_tiles{0};
     std::array<LevelPoints, kLevels> levels{};
-    bool always_finishes = false;
+    int most_dispatches = 1;  // of the solver, after which every point is done
+    std::uint64_t most_work = 0;  // iterations that a point may take in all
     glm::ivec2 area{0};  // px that its lists cover
+
+    // So many groups of the solver in rows, each short enough for a dispatch.
+    glm::ivec2 solver_rows(int groups) const {
+        const auto row = static_cast<int>(std::clamp<std::uint64_t>(kSolverSlice / std::clamp<std::uint64_t>(most_work, 1, kMostWork), kFewestGroups, 65535));
+        return {row * glsl::kExactSolveGroupX, divided_up(groups, row)};
+    }
 };
 
 }  // namespace penumbra

@@ -96,8 +96,8 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass
                 nodes.bind_texture(glsl::kExactNodesUnit);
                 glsl::ExactParams params = band.params;
                 params.jobs = jobs;
-                params.extent = {params.jobs, 1};
-                run_solver(params, band, work, 0, [&](const glsl::ExactParams& p) { program.dispatch(p, p.extent); });
+                params.extent = lanes_ > 1 ? glm::ivec2(params.jobs, 1) : band.solver_rows(divided_up(params.jobs, glsl::kExactSolveGroupX));
+                run_solver(params, band, work, 0, [&](const glsl::ExactParams& p) { return program.dispatch(p, p.extent, static_cast<std::size_t>(p.extent.x)); });
                 std::uint32_t spent = 0;
                 counters_.read(4 * glsl::kExactCountSpent, &spent, sizeof(spent));
                 if (spent != 0)

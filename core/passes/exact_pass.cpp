@@ -50,6 +50,7 @@ ExactPass::ExactPass(const std::string& shader_dir)
       counters_(GL_R32UI, 4 * glsl::kExactCountTiles),
       change_(GL_R32UI, 8) {}
 
+
 std::size_t ExactPass::bytes() const {
     return coarse_heads_.bytes() + coarse_entries_.bytes() + coarse_lights_.bytes() + heads_.bytes() + entries_.bytes() +
            lights_.bytes() + points_.bytes() + asks_.bytes() + counters_.bytes() + means_.bytes() + elements_.bytes() + elements_before_.bytes();
@@ -72,7 +73,9 @@ gl::ComputeProgram& ExactPass::solver_for(const Needs& needs) {
                                            {"kSlopes", needs.slopes ? 1 : 0},
                                            {"kSurfaces", needs.surfaces ? 1 : 0},
                                            {"kNodes", needs.nodes ? 1 : 0},
-                                           {"kMoment", needs.moment}};
+                                           {"kMoment", needs.moment},
+                                           {"kExactLanes", lanes_},
+                                           {"kBudget", static_cast<int>(long_loops_ ? kMostWorkOfLongLoops : kMostWork)}};
     return solvers_.emplace(needs, gl::ComputeProgram("exact_solve.comp", sizeof(glsl::ExactParams), shader_dir_, constants)).first->second;
 }
 
@@ -138,7 +141,11 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
         ratio = exact.coarse_tile / glsl::kExactTile;
     }
     const std::uint32_t list_work = make(band.params.tiles, glsl::kExactTile, ratio, false, heads_, entries_, lights_);
-    band.always_finishes = std::uint64_t(list_work) * static_cast<std::uint64_t>(exact.sectors) < kMostWork;
+    // An open sector, and one that is looked through for lights, takes a little more than its list says.
+    band.most_dispatches = solver_dispatches(list_work + std::int64_t(list_work) / 8 + 40, exact.sectors, long_loops_ ? kMostWorkOfLongLoops : kMostWork);
+    // Lanes share the sectors: none has so much to do that a dispatch would not end it.
+    if (lanes_ > 1) band.most_dispatches = 1;
+    band.most_work = std::uint64_t(list_work) * static_cast<std::uint64_t>(exact.sectors);
     return work;
 }
 
@@ -162,15 +169,30 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
     band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_WRITE);
     field.distance.bind_texture(glsl::kExactDistanceUnit);
     points_.bind_texture(glsl::kExactPointsUnit);
+    const std::size_t group_count = 4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1);
+    if (lanes_ > 1) {
+        counters_.bind_indirect();
+        run_solver(params, band, work, moment, [&](const glsl::ExactParams& p) {
+            program.dispatch_indirect(p, group_count);
+            return 1;
+        });
+        return work;
+    }
+    // So many at a time that no dispatch is long: a render stops, and says that it lives, between two.
+    std::uint32_t groups = 0;
+    counters_.read(group_count, &groups, sizeof(groups));
+    params.extent = band.solver_rows(static_cast<int>(groups));
     run_solver(params, band, work, moment, [&](const glsl::ExactParams& p) {
-        program.dispatch_indirect(p, 4 * static_cast<std::size_t>(glsl::kExactCountLevel + 4 * level + 1));
+        return program.dispatch(p, p.extent, static_cast<std::size_t>(p.extent.x));
     });
     return work;
 }
 
-// Dispatches until every point is done: one whose loops have spent their iterations goes on in the next.
+// Dispatches until every point is done: one whose loops have spent their iterations goes on in the next. Where loops may be long, as often
+// as might be needed: it is seldom more than once, and what waits for nothing is quicker. One such driver (NVIDIA 580) also reads back
+// counters that are the group counts of a dispatch as they were before it, and so tells nothing of who is done.
 void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work, int moment,
-                           const std::function<void(const glsl::ExactParams&)>& dispatch) {
+                           const std::function<int(const glsl::ExactParams&)>& dispatch) {
     heads_.bind_texture(glsl::kExactHeadsUnit);
     entries_.bind_texture(glsl::kExactEntriesUnit);
     lights_.bind_texture(glsl::kExactLightsUnit);
@@ -182,17 +204,17 @@ void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work,
         elements_.bind_texture(glsl::kExactElementsUnit);
     }
     counters_.bind_storage(glsl::kExactCountersStorage);
-    counters_.bind_indirect();
-    for (;;) {
-        dispatch(params);
-        ++work.dispatches;
-        if (band.always_finishes) break;
+    for (int done = 0;;) {
+        work.dispatches += dispatch(params);
+        params.continues = 1;
+        ++done;
+        if (band.most_dispatches == 1 || (long_loops_ && done == band.most_dispatches)) break;
+        if (long_loops_) continue;
         std::uint32_t unfinished = 0;
         counters_.read(4 * glsl::kExactCountUnfinished, &unfinished, sizeof(unfinished));
         if (unfinished == 0) break;
         unfinished = 0;
         counters_.write(4 * glsl::kExactCountUnfinished, &unfinished, sizeof(unfinished));
-        params.continues = 1;
     }
 }
 

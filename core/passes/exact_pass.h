@@ -31,6 +31,10 @@ public:
 class ExactPass {
 public:
     explicit ExactPass(const std::string& shader_dir);
+    // On a device that ends no long loops: a point that has much to see is done in one dispatch, or a few.
+    void allow_long_loops() { long_loops_ = true; }
+    // Threads that share the sectors of four points, before the first frame: more keep a GPU busy, and llvmpipe has none to spare.
+    void share_sectors(int lanes) { lanes_ = lanes; }
 
     // `record(name, extent, run)` times each step: lists, points, cells, fill.
     using Record = std::function<void(const char* name, glm::ivec2 extent, const std::function<PassWork()>& run)>;
@@ -58,7 +62,7 @@ private:
     void bounce(const Plan& plan, const PassSettings& settings, DeltaPass& delta, const Record& record, Band& band);
     PassWork reflect(const Plan& plan, Band& band, bool first);
     void run_solver(glsl::ExactParams params, Band& band, PassWork& work, int moment,
-                    const std::function<void(const glsl::ExactParams&)>& dispatch);
+                    const std::function<int(const glsl::ExactParams&)>& dispatch);
 
     // A program for what a scene has, compiled when first asked for.
     struct Needs {
@@ -72,6 +76,8 @@ private:
     gl::ComputeProgram& solver_for(const Needs& needs);
 
     std::string shader_dir_;
+    int lanes_ = 1;
+    bool long_loops_ = false;
     std::map<std::pair<bool, bool>, gl::ComputeProgram> lists_;
     std::map<Needs, gl::ComputeProgram> solvers_;
     gl::ComputeProgram split_;

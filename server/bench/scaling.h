@@ -12,10 +12,14 @@ namespace penumbra {
 
 struct ScalingSettings {
     std::vector<std::string> methods;
+    std::vector<std::string> curves;  // of scaling_curves(); empty: all
     std::string quality = "standard";
     int repeats = 3;
     double most_seconds = 20;  // a curve ends after the first point that cost more processor time
 };
+
+// The names of what can grow.
+std::vector<std::string> scaling_curves();
 
 // Renders scenes of a growing number of discs, size of the canvas and number of lamps; tells each point as a line of JSON.
 void measure_scaling(const ScalingSettings& settings, RenderBackend& backend, const Engine& engine,

@@ -31,6 +31,7 @@ struct BenchOptions {
     bool fresh = false;
     bool skip_table = false;
     bool scaling = false;
+    std::vector<std::string> curves = scaling_curves();
     BenchSettings settings;
 };
 
@@ -87,7 +88,7 @@ int run_skip_table(const BenchOptions& options, const Engine& engine) {
 int run_scaling(const BenchOptions& options, const Engine& engine) {
     if (options.output != "-") std::ofstream(options.output, std::ios::trunc);
     const auto backend = engine.make_backend({.device = options.devices.front(), .shader_dir = {}, .tone_lut = {}});
-    measure_scaling({options.methods, "standard", options.settings.repeats, options.settings.most_seconds}, *backend, engine,
+    measure_scaling({options.methods, options.curves, "standard", options.settings.repeats, options.settings.most_seconds}, *backend, engine,
                     [&](const std::string& row) {
                         put(options, row + "\n");
                         if (options.output != "-") std::fprintf(stderr, "%s\n", row.c_str());
@@ -157,6 +158,8 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
                       "Measure what each kind of work that a scene does not need costs, as a Markdown table (standard quality)");
     command->add_flag("--scaling", options->scaling,
                       "Measure how cost grows with shapes, canvas and emitters (scenes of its own, standard quality)")->excludes(skip_table);
+    command->add_option("--curves", options->curves, "What grows, with --scaling")
+        ->check(CLI::IsMember(scaling_curves()))->delimiter(',')->capture_default_str();
     command->add_flag("--fresh", options->fresh, "Measure all cases anew");
     command->add_option("--truths,--truth-dir", options->truths,
                         "Folder of exact solutions, kept by the scene's hash; made when the first one is solved")->capture_default_str();

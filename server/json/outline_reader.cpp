@@ -19,9 +19,14 @@ namespace penumbra {
 namespace {
 
 constexpr double kUnread = std::numeric_limits<double>::quiet_NaN();
+// Of all outlines of a scene: eight that each cross themselves as often as one may.
+constexpr std::size_t kCrossingWork = std::size_t(1) << 19;
 constexpr double kCurveTolerancePx = 0.05;  // changes the coverage of an edge pixel by a twentieth at most
 
 }  // namespace
+
+OutlineReader::OutlineReader(ValueReader& reader, const Limits& limits, const FontSource& fonts)
+    : reader_(reader), limits_(limits), fonts_(fonts), work_{kCrossingWork} {}
 
 void OutlineReader::set_pixel_size(double size) {
     if (size > 0 && size <= limits_.max_coordinate) {
@@ -54,17 +59,22 @@ Polygon OutlineReader::drawn(const Path& where, NodeId id, std::vector<Ring> rin
     for (const Ring& ring : rings) {
         points += ring.size();
     }
-    // Too many for the limit are told by the validation.
-    if (nonzero && points <= limits_.max_points_per_shape) {
-        auto filled = even_odd_of_nonzero(rings, 4 * limits_.max_points_per_shape);
+    // Too many for the limits are told by the validation; a scene that is refused anyway is not worth the work.
+    if (nonzero && points <= limits_.max_points_per_shape && !too_many_) {
+        if (!reader_.problems().empty()) {
+            return nothing(where, key);
+        }
+        auto filled = even_odd_of_nonzero(rings, 4 * limits_.max_points_per_shape, work_);
         if (!filled) {
-            reader_.report(where, id, "too_many", [] { return "is too intricate: it crosses itself too often, or too many of its edges lie side by side"; });
+            reader_.report(where, id, "too_many", [] { return "is too intricate: it, or it and the outlines before it, cross themselves too often"; });
             return nothing(where, key);
         }
         rings = std::move(*filled);
     }
     Polygon polygon = polygon_of(rings);
     polygon.key = key;
+    points_ += polygon.points.size();
+    too_many_ = too_many_ || polygon.points.size() > limits_.max_points_per_shape || points_ > limits_.max_points;
     for (Point& point : polygon.points) {
         point = position + point * scale;
     }

@@ -13,8 +13,7 @@ namespace penumbra {
 // Paths and texts: what they draw, as polygons. What is wrong with them is reported here, since the scene has only what comes of them.
 class OutlineReader {
 public:
-    OutlineReader(ValueReader& reader, const Limits& limits, const FontSource& fonts)
-        : reader_(reader), limits_(limits), fonts_(fonts) {}
+    OutlineReader(ValueReader& reader, const Limits& limits, const FontSource& fonts);
 
     // Of the canvas, in world units: curves become edges as fine as it asks for.
     void set_pixel_size(double size);
@@ -32,6 +31,9 @@ private:
     const Limits& limits_;
     const FontSource& fonts_;
     double tolerance_ = 0.05;  // world units
+    CrossingWork work_;        // left for all outlines
+    std::size_t points_ = 0;   // of those that were read
+    bool too_many_ = false;    // of these
 };
 
 }  // namespace penumbra

@@ -6,10 +6,18 @@
 namespace penumbra {
 namespace {
 
+// What a string holds outside of itself.
+std::size_t beside(const std::string& text) { return text.capacity() < sizeof(std::string) / 2 ? 0 : text.capacity() + 1; }
+
+// What one answer keeps, rounded up: the nodes of list and map, their keys, and each block's own rest.
 std::size_t bytes_of(const std::string& key, const Answer& answer) {
-    // Two keys, the nodes of list and map, and about what the statistics hold: counted generously.
-    return answer.picture.capacity() + 2 * key.size() + answer.stats.passes.size() * sizeof(PassStats) +
-           answer.stats.skipped.size() * sizeof(SkippedWork) + 512;
+    constexpr std::size_t kNodes = 512, kBlock = 16;
+    const RenderStats& stats = answer.stats;
+    std::size_t bytes = kNodes + answer.picture.capacity() + 2 * key.size() + beside(stats.device) + beside(stats.method_reason);
+    bytes += stats.passes.capacity() * sizeof(PassStats) + stats.skipped.capacity() * sizeof(SkippedWork);
+    for (const PassStats& pass : stats.passes) bytes += beside(pass.name);
+    for (const SkippedWork& skipped : stats.skipped) bytes += beside(skipped.what) + beside(skipped.why) + 2 * kBlock;
+    return bytes;
 }
 
 }  // namespace

@@ -24,7 +24,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             for (const Point& point : ring) check(std::isfinite(point.x) && std::isfinite(point.y), "points are finite");
         }
         if (points > kMostPoints) continue;  // refused by the validation
-        if (const auto filled = even_odd_of_nonzero(rings, 4 * kMostPoints)) {
+        CrossingWork work{1u << 14};
+        if (const auto filled = even_odd_of_nonzero(rings, 4 * kMostPoints, work)) {
             for (const Ring& ring : *filled) {
                 for (const Point& point : ring) check(std::isfinite(point.x) && std::isfinite(point.y), "filled points are finite");
             }

@@ -71,7 +71,8 @@ TEST(Tonemap, GoldenValues) {
             }
         }
     }
-    EXPECT_LE(off, 2) << "of 105 codes";
+    // The device's own powers and logarithms: llvmpipe's round 2 of them the other way, an H200's 4.
+    EXPECT_LE(off, shared_renderer().device().kind == "cpu" ? 2 : 5) << "of 105 codes";
 }
 
 TEST(Tonemap, HugeRadianceStaysWhite) {

@@ -309,6 +309,26 @@ TEST(ExactBytes, SkippingAllButCellsChangesNone) {
     }
 }
 
+// As a GPU solves: threads share the sectors, in another order of sums.
+TEST(ExactLanes, ShareTheSectorsAndAddUp) {
+    RendererOptions options = test_options();
+    options.solver_lanes = 4;
+    Renderer four(options);
+    options.solver_lanes = 1;
+    Renderer one(options);
+    Scene bouncing = test_scene(61, 47);
+    for (Shape& each : bouncing.shapes) each.albedo = Colour(0.5);
+    bouncing.render.bounces = 2;
+    Scene gradient = test_scene(83, 33, Quality::high);
+    gradient.sky.gradient = {{0, Colour(0.1)}, {120, Colour(0.5, 0.2, 0)}, {300, Colour(0, 0.1, 0.4)}};
+    for (const Scene& scene : {test_scene(), test_scene(33, 90, Quality::draft), gradient, bouncing, test_scene(1, 1)}) {
+        const ImageF a = std::get<ImageF>(four.render(scene).picture), b = std::get<ImageF>(one.render(scene).picture);
+        const double floor = 1e-6 * mean(b);
+        for (std::size_t i = 0; i < a.data.size(); ++i) ASSERT_NEAR(a.data[i], b.data[i], 2e-6 * b.data[i] + floor) << i;
+        EXPECT_EQ(std::get<ImageF>(four.render(scene).picture).data, a.data) << "twice";
+    }
+}
+
 TEST(ExactBytes, RendersAreRepeatableWhateverWasRenderedBefore) {
     Scene other = test_scene(300, 211, Quality::high);
     other.sky.gradient = {{0, Colour(0)}, {90, Colour(3)}};

@@ -45,7 +45,8 @@ const json& bounds() {
         if (device != nullptr && std::string(device) == "gpu") beyond.push_back("-gpu");
         for (const std::string& name : beyond) {
             std::ifstream file(start + name + ".json");
-            for (const auto& [key, bound] : json::parse(file).items()) all[key] = std::max(all.value(key, 0.0), bound.get<double>());
+            const json more = json::parse(file);  // kept: items() only refers to it
+            for (const auto& [key, bound] : more.items()) all[key] = std::max(all.value(key, 0.0), bound.get<double>());
         }
         return all;
     }();

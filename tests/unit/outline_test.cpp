@@ -180,8 +180,15 @@ TEST(PathData, EndsSoonAfterTheMostPoints) {
     EXPECT_LT(points, 5000u + 4097);
 }
 
+constexpr std::size_t kMuchWork = 1u << 20;
+
+std::optional<std::vector<Ring>> solved(const std::vector<Ring>& nonzero, std::size_t most_splits) {
+    CrossingWork work{kMuchWork};
+    return even_odd_of_nonzero(nonzero, most_splits, work);
+}
+
 void expect_same_filling(const std::vector<Ring>& nonzero, const std::string& what) {
-    const auto even_odd = even_odd_of_nonzero(nonzero, 100000);
+    const auto even_odd = solved(nonzero, 100000);
     ASSERT_TRUE(even_odd) << what;
     std::uint32_t state = 9;
     const auto next = [&] { return double((state = state * 1664525u + 1013904223u) >> 8) / double(1 << 24); };
@@ -228,26 +235,94 @@ TEST(Winding, FillsWhatTheNonzeroRuleFills) {
 TEST(Winding, AreasAreExact) {
     const Ring square{{10, 10}, {60, 10}, {60, 60}, {10, 60}};
     const Ring other{{40, 40}, {90, 40}, {90, 90}, {40, 90}};
-    EXPECT_NEAR(std::abs(signed_area(*even_odd_of_nonzero({square, other}, 100))), 2 * 2500 - 400, 1e-3);
+    EXPECT_NEAR(std::abs(signed_area(*solved({square, other}, 100))), 2 * 2500 - 400, 1e-3);
     // Nothing left inside: one ring of eight corners.
-    const auto joined = *even_odd_of_nonzero({square, other}, 100);
+    const auto joined = *solved({square, other}, 100);
     ASSERT_EQ(joined.size(), 1u);
     EXPECT_EQ(joined[0].size(), 8u);
-    EXPECT_TRUE(even_odd_of_nonzero({}, 100)->empty());
-    EXPECT_TRUE(even_odd_of_nonzero({{{1, 1}, {1, 1}}}, 100)->empty());
+    EXPECT_TRUE(solved({}, 100)->empty());
+    EXPECT_TRUE(solved({{{1, 1}, {1, 1}}}, 100)->empty());
+}
+
+TEST(Winding, BeyondAnyGridNothingIsDone) {
+    for (const double side : {1e308, 1e-310}) {
+        const std::vector<Ring> ring{{{-side, -side}, {side, 0}, {0, side}}};
+        EXPECT_EQ(*solved(ring, 100), ring) << side;
+    }
+}
+
+// Of 16,384 points, as many as a path may have: what crossings cost until it is solved or refused.
+struct Cost {
+    bool solved = false;
+    std::size_t work = 0;
+};
+Cost cost(const std::vector<Ring>& nonzero) {
+    CrossingWork work{kMuchWork};
+    const bool is_solved = even_odd_of_nonzero(nonzero, 65536, work).has_value();
+    return {is_solved, kMuchWork - work.left};
+}
+
+Ring zigzag(int count, Point even, Point odd, Point step) {
+    Ring ring;
+    for (int i = 0; i < count; ++i) ring.push_back((i % 2 == 0 ? even : odd) + double(i) * step);
+    return ring;
 }
 
 TEST(Winding, GivesUpInsteadOfTakingForEver) {
-    // Every edge crosses every other.
-    std::vector<Ring> comb(2);
-    for (int i = 0; i < 400; ++i) {
-        comb[0].push_back({double(i), i % 2 == 0 ? 0.0 : 400.0});
-        comb[1].push_back({i % 2 == 0 ? 0.0 : 400.0, double(i)});
+    // What may be split 65,536 times may cross half as often; a crossing costs two, one for its place and one for its pair.
+    const auto refused = [](const std::vector<Ring>& nonzero, const std::string& what) {
+        const Cost c = cost(nonzero);
+        EXPECT_FALSE(c.solved) << what;
+        EXPECT_LE(c.work, 100000u) << what;
+    };
+    refused({zigzag(800, {0, 0}, {0, 400}, {1, 0}), zigzag(800, {0, 0}, {400, 0}, {0, 1})}, "a weave");
+    Ring star, tangle;
+    std::uint32_t state = 3;
+    const auto next = [&] { return double((state = state * 1664525u + 1013904223u) >> 8); };
+    for (int i = 0; i < 16384; ++i) {
+        const double angle = 2 * std::numbers::pi * i * 8191 / 16384;
+        star.push_back(1000.0 * Point(std::cos(angle), std::sin(angle)));
+        tangle.push_back({next(), next()});
     }
-    EXPECT_FALSE(even_odd_of_nonzero(comb, 1000));
-    Ring bundle;
-    for (int i = 0; i < 16000; ++i) bundle.push_back({i % 2 == 0 ? i * 1e-4 : 1000.0 + i * 1e-4, i % 2 == 0 ? 0.0 : 1000.0});
-    EXPECT_FALSE(even_odd_of_nonzero({bundle}, 65536));
+    refused({star}, "a star");
+    refused({tangle}, "a tangle");
+    // All through one point: too many pairs there.
+    std::vector<Ring> lines;
+    for (int i = 0; i < 4096; ++i) lines.push_back({{i * 16.0, 0}, {65536.0 - i * 16.0, 65536}, {65536.0 - i * 16.0, 65536 - 1 - i % 7}});
+    refused(lines, "lines through a point");
+}
+
+TEST(Winding, ManyEdgesThatDoNotCrossAreLittleWork) {
+    const auto costs = [](const std::vector<Ring>& nonzero, std::size_t most, const std::string& what) {
+        const Cost c = cost(nonzero);
+        EXPECT_TRUE(c.solved) << what;
+        EXPECT_LE(c.work, most) << what;
+    };
+    // The edge that closes a zigzag crosses all others.
+    costs({zigzag(16000, {0, 0}, {1000, 1000}, {1e-4, 0})}, 2 * 16000, "a bundle");
+    costs({zigzag(16000, {0, 0}, {1000, 0}, {0, 0.01})}, 2 * 16000, "a hatching across");
+    costs({zigzag(16000, {0, 0}, {0, 1000}, {0.01, 0})}, 2 * 16000, "a hatching upwards");
+    costs({Ring(16384, Point(0)), zigzag(16384, {0, 0}, {1000, 7}, {0, 0})}, 0, "one edge again and again");
+    std::vector<Ring> bars, rays;
+    for (int i = 0; i < 4096; ++i) {
+        const double angle = 2 * std::numbers::pi * i / 4096, other = 2 * std::numbers::pi * (i + 0.5) / 4096;
+        bars.push_back({{0, i * 1.0}, {4096, i * 1.0}, {4096, i + 0.4}, {0, i + 0.4}});
+        rays.push_back({{0, 0}, 1000.0 * Point(std::cos(angle), std::sin(angle)), 1000.0 * Point(std::cos(other), std::sin(other))});
+    }
+    costs(bars, 0, "bars");
+    costs(rays, 0, "rays from one point");
+}
+
+TEST(Winding, WorkIsSharedByAllThatIsSolved) {
+    const std::vector<Ring> weave{zigzag(100, {0, 0}, {0, 100}, {1, 0}), zigzag(100, {0, 0}, {100, 0}, {0, 1})};
+    const std::size_t once = cost(weave).work;
+    ASSERT_GT(once, 1000u);
+    CrossingWork work{2 * once};
+    EXPECT_TRUE(even_odd_of_nonzero(weave, 65536, work));
+    EXPECT_TRUE(even_odd_of_nonzero(weave, 65536, work));
+    EXPECT_EQ(work.left, 0u);
+    EXPECT_FALSE(even_odd_of_nonzero(weave, 65536, work));
+    EXPECT_TRUE(even_odd_of_nonzero({{{0, 0}, {9, 0}, {9, 9}}}, 65536, work));  // nothing crosses
 }
 
 // ---- text: Debian's DejaVu Sans, whose letters have simple measures
