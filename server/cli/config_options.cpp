@@ -73,6 +73,13 @@ void add_config_options(CLI::App& command, Config& config) {
             "Longest body, in MiB [" + std::to_string(config.max_body_bytes >> 20) + "]")
         ->envname("PENUMBRA_MAX_BODY_MB")
         ->check(whole_number(1, 1024));
+    command
+        .add_option_function<std::size_t>(
+            "--max-held-mb", [&config](std::size_t mb) { config.held_bytes = mb << 20; },
+            "MiB of requests and unread answers, of all connections together; at least two longest bodies [" +
+                std::to_string(config.held_bytes >> 20) + "]")
+        ->envname("PENUMBRA_MAX_HELD_MB")
+        ->check(whole_number(1, 65536));
     option("--max-pixels", config.max_pixels, "PENUMBRA_MAX_PIXELS", "Largest canvas, in pixels")
         ->check(number_between(1, config.max_pixels));
     option("--max-shapes", config.bounds.max_shapes, "PENUMBRA_MAX_SHAPES", "Most shapes of a scene")
@@ -101,10 +108,10 @@ void add_config_options(CLI::App& command, Config& config) {
     option("--keep-alive", config.keep_alive_s, "PENUMBRA_KEEP_ALIVE", "Seconds an idle connection is kept")
         ->check(whole_number(1, 3600));
     option("--connections", config.spare_http_threads, "PENUMBRA_CONNECTIONS",
-           "Connections served beside those that wait for a render")
+           "Requests answered at a time beside those that wait for a render, a thread each")
         ->check(whole_number(2, 1000));
     option("--waiting-connections", config.max_waiting_connections, "PENUMBRA_WAITING_CONNECTIONS",
-           "Connections that may wait to be served; more get 503")
+           "Connections open beyond these: silent, slow or idle; more get 503")
         ->check(whole_number(1, 10000));
     option("--admin-port", config.admin_port, "PENUMBRA_ADMIN_PORT", "Port for /metrics and probes; 0 takes a free one, -1 none")
         ->check(whole_number(-1, 65535));

@@ -78,10 +78,10 @@ Api::Api(RenderService& service, Jobs* jobs, const Config& config, const Log& lo
 const std::vector<Api::Endpoint>& Api::endpoints() {
     static const std::vector<Endpoint> list{
         {.pattern = "/", .get = &Api::hint},
-        {.pattern = "/livez", .get = &Api::alive, .operators = true},
-        {.pattern = "/healthz", .get = &Api::alive, .operators = true},
-        {.pattern = "/readyz", .get = &Api::ready, .operators = true},
-        {.pattern = "/startupz", .get = &Api::started, .operators = true},
+        {.pattern = "/livez", .get = &Api::alive, .operators = true, .probe = true},
+        {.pattern = "/healthz", .get = &Api::alive, .operators = true, .probe = true},
+        {.pattern = "/readyz", .get = &Api::ready, .operators = true, .probe = true},
+        {.pattern = "/startupz", .get = &Api::started, .operators = true, .probe = true},
         {.pattern = "/metrics", .get = &Api::metrics, .clients = false, .operators = true},
         {.pattern = "/openapi.json", .get = &Api::openapi},
         {.pattern = "/problems/*", .get = &Api::problem_page},
@@ -103,10 +103,8 @@ const std::vector<Api::Endpoint>& Api::endpoints() {
 void Api::read_headers(Request& request, Exchange& exchange) const {
     const auto ids = header_values(request, "X-Request-Id");
     exchange.request_id = ids.size() == 1 && is_request_id(ids[0]) ? ids[0] : new_request_id();
-    const auto lengths = header_values(request, "Content-Length");
-    const auto encodings = header_values(request, "Transfer-Encoding");
-    exchange.malformed = refuse_framing(lengths, encodings);
-    exchange.expects_body = !exchange.malformed.empty() || !encodings.empty() || (!lengths.empty() && lengths[0] != "0");
+    // 100 Continue has been sent to those whose body is wanted; the library would say it to others as well.
+    if (!declared_too_large(request)) request.headers.erase("Expect");
     const auto parents = header_values(request, "traceparent");
     if (parents.size() == 1) exchange.trace_id = trace_id_of(parents[0]);
     if (!exchange.trace_id.empty()) exchange.trace_parent = parents[0];
@@ -148,50 +146,86 @@ bool Api::route(const Request& request, Response& response) {
 
 bool Api::try_route(const Request& request, Response& response) {
     Exchange& exchange = GuardedServer::exchange();
-    if (!exchange.malformed.empty()) {
-        respond_.problem(response, make_problem(ProblemKind::bad_request, exchange.malformed));
-        return true;
-    }
     const Endpoint* endpoint = find(request.path);
-    if (request.method == "OPTIONS" && (endpoint || request.path == "*")) {
+    if (exchange.malformed.empty() && request.method == "OPTIONS" && (endpoint || request.path == "*")) {
         preflight(endpoint, request, response);
         return true;
     }
-    if (!endpoint) {
-        respond_.problem(response, make_problem(ProblemKind::not_found, "There is nothing under " + request.path + "."));
+    if (const auto problem = refusal(endpoint, request, exchange)) {
+        respond_.problem(response, *problem);
         return true;
     }
-    exchange.endpoint = endpoint->pattern;
-    const bool get = request.method == "GET" || request.method == "HEAD";
-    const bool known = (get && endpoint->get) || (request.method == "POST" && endpoint->post) || (request.method == "DELETE" && endpoint->remove);
-    if (!known || (endpoint->get == &Api::render_signed && get && config_.url_key.empty())) {
-        std::string allow = allow_of(*endpoint);
-        if (endpoint->get == &Api::render_signed && config_.url_key.empty()) allow = "POST, OPTIONS";
-        respond_.problem(response, method_not_allowed(request.method, allow));
-        return true;
-    }
-    if (!let_in(*endpoint, request, response)) return true;
     if (request.method == "POST") return false;
-    (this->*(get ? endpoint->get : endpoint->remove))(request, response);
+    (this->*(endpoint->get && request.method != "DELETE" ? endpoint->get : endpoint->remove))(request, response);
     return true;
 }
 
-bool Api::let_in(const Endpoint& endpoint, const Request& request, Response& response) {
-    Exchange& exchange = GuardedServer::exchange();
+std::optional<HttpProblem> Api::refusal(const Endpoint* endpoint, const Request& request, Exchange& exchange) const {
+    if (!exchange.malformed.empty()) return make_problem(ProblemKind::bad_request, exchange.malformed);
+    if (!endpoint) return make_problem(ProblemKind::not_found, "There is nothing under " + request.path + ".");
+    exchange.endpoint = endpoint->pattern;
+    const bool get = request.method == "GET" || request.method == "HEAD";
+    const bool known = (get && endpoint->get) || (request.method == "POST" && endpoint->post) || (request.method == "DELETE" && endpoint->remove);
+    const bool no_key = endpoint->get == &Api::render_signed && config_.url_key.empty();
+    if (!known || (no_key && get)) return method_not_allowed(request.method, no_key ? "POST, OPTIONS" : allow_of(*endpoint));
+    if (auto problem = refuse_client(*endpoint, request, exchange)) return problem;
+    return request.method == "POST" ? refuse_body(*endpoint, request) : std::nullopt;
+}
+
+std::optional<HttpProblem> Api::refuse_client(const Endpoint& endpoint, const Request& request, Exchange& exchange) const {
     exchange.client = request.remote_addr;
     if (config_.trust_forwarded_for) {
         if (const std::string entry = last_entry(joined(header_values(request, "X-Forwarded-For"))); !entry.empty()) exchange.client = entry;
     }
     const bool is_signed = endpoint.get == &Api::render_signed && request.method != "POST";  // which is checked by itself
-    if (!endpoint.guarded || !config_.tokens.required() || is_signed) return true;
+    if (!endpoint.guarded || !config_.tokens.required() || is_signed) return std::nullopt;
     const auto headers = header_values(request, "Authorization");
     const auto name = headers.size() == 1 ? config_.tokens.name_of(headers[0]) : std::nullopt;
-    if (!name) {
-        respond_.problem(response, make_problem(ProblemKind::unauthorized, headers.empty() ? "" : "The token is not one of this service."));
-        return false;
-    }
+    if (!name) return make_problem(ProblemKind::unauthorized, headers.empty() ? "" : "The token is not one of this service.");
     exchange.client = *name;
-    return true;
+    return std::nullopt;
+}
+
+std::optional<HttpProblem> Api::refuse_body(const Endpoint& endpoint, const Request& request) const {
+    if (!request.params.empty()) return make_problem(ProblemKind::bad_request, "This endpoint takes no query parameters.");
+    for (const std::string& coding : header_values(request, "Content-Encoding")) {
+        if (coding == "identity") continue;
+        return make_problem(ProblemKind::unsupported_media_type, "The body is encoded (" + coding + "); send it as it is.");
+    }
+    if (const std::string refusal = refuse_content_type(joined(header_values(request, "Content-Type"))); !refusal.empty()) {
+        return make_problem(ProblemKind::unsupported_media_type, refusal);
+    }
+    const bool picture = endpoint.post == &Api::render || endpoint.post == &Api::begin_job;
+    if (picture && parse_accept(joined(header_values(request, "Accept"))).nothing_fits()) {
+        std::string types;
+        for (const PictureFormat& format : picture_formats()) types += (types.empty() ? "" : ", ") + std::string(format.media_type);
+        return make_problem(ProblemKind::not_acceptable, "Pictures come as " + types + ".");
+    }
+    if (declared_too_large(request)) return too_large();
+    return std::nullopt;
+}
+
+Edge::Judgement Api::judge(const RequestHead& head, const std::string& malformed) const {
+    Edge::Judgement judgement;
+    const std::size_t query = head.target.find('?');
+    Request request;
+    request.method = head.method;
+    request.path = head.target.substr(0, query);
+    const Endpoint* endpoint = find(request.path);
+    judgement.probe = endpoint && endpoint->probe;
+    judgement.at_once = endpoint && endpoint->get == &Api::alive;
+    // What is written in another way is known when the library has read it.
+    if (head.target.find_first_of("%#") != std::string_view::npos) return judgement;
+    if (request.method != "POST") {
+        judgement.wants_body = false;
+        return judgement;
+    }
+    for (const auto& [name, value] : head.fields) request.headers.emplace(name, value);
+    if (query != std::string_view::npos && query + 1 < head.target.size()) request.params.emplace("", "");
+    Exchange exchange;
+    exchange.malformed = malformed;
+    judgement.wants_body = !refusal(endpoint, request, exchange);
+    return judgement;
 }
 
 void Api::preflight(const Endpoint* endpoint, const Request& request, Response& response) {
@@ -218,65 +252,20 @@ bool Api::declared_too_large(const Request& request) const {
     return std::stoull(lengths[0]) > config_.max_body_bytes;
 }
 
-// Reads at most what is allowed, whatever the headers promise. False: `problem` says why not.
-bool Api::read_body(const Request& request, const httplib::ContentReader& reader, std::string& body, HttpProblem& problem) const {
-    Exchange& exchange = GuardedServer::exchange();
-    if (!exchange.expects_body) return true;  // no length and no chunks is no body
-    if (declared_too_large(request)) {
-        problem = too_large();
-        return false;
-    }
-    bool too_long = false;
-    exchange.body_read = reader([&](const char* data, std::size_t size) {
-        too_long = body.size() + size > config_.max_body_bytes;
-        if (!too_long) body.append(data, size);
-        return !too_long;
-    });
-    // The library of Debian 12 takes chunks that do not end as they must for the end of the body.
-    constexpr std::uint32_t kTwoLines = 0x0d0a0d0a;
-    if (exchange.body_read && exchange.body_end != kTwoLines && request.has_header("Transfer-Encoding")) exchange.body_read = false;
-    if (exchange.body_read) return true;
-    if (too_long || exchange.fault == Fault::body_too_large) {
-        problem = too_large();
-    } else {
-        problem = make_problem(kind_of(exchange.fault), exchange.fault == Fault::none ? "The body ends early or is framed wrongly." : "");
-    }
-    return false;
-}
-
-bool Api::refuse_body_headers(const Request& request, Response& response) {
-    for (const std::string& coding : header_values(request, "Content-Encoding")) {
-        if (coding == "identity") continue;
-        respond_.problem(response, make_problem(ProblemKind::unsupported_media_type, "The body is encoded (" + coding + "); send it as it is."));
-        return true;
-    }
-    const std::string refusal = refuse_content_type(joined(header_values(request, "Content-Type")));
-    if (!refusal.empty()) respond_.problem(response, make_problem(ProblemKind::unsupported_media_type, refusal));
-    return !refusal.empty();
-}
-
-void Api::with_body(const Request& request, Response& response, const httplib::ContentReader& reader) {
+void Api::with_body(const Request& request, Response& response) {
     guarded(request, response, [&] {
-        const Endpoint* endpoint = find(request.path);
-        if (!request.params.empty()) {
-            respond_.problem(response, make_problem(ProblemKind::bad_request, "This endpoint takes no query parameters."));
+        Exchange& exchange = GuardedServer::exchange();
+        if (exchange.expects_body && !exchange.body_read) {
+            if (exchange.fault == Fault::body_too_large) {
+                respond_.problem(response, too_large());
+            } else if (exchange.fault != Fault::none) {
+                respond_.problem(response, problem_of(exchange.fault));
+            } else {
+                respond_.problem(response, make_problem(ProblemKind::bad_request, "The body ends early or is framed wrongly."));
+            }
             return;
         }
-        if (refuse_body_headers(request, response)) return;
-        const bool picture = endpoint->post == &Api::render || endpoint->post == &Api::begin_job;
-        if (picture && parse_accept(joined(header_values(request, "Accept"))).nothing_fits()) {
-            std::string types;
-            for (const PictureFormat& format : picture_formats()) types += (types.empty() ? "" : ", ") + std::string(format.media_type);
-            respond_.problem(response, make_problem(ProblemKind::not_acceptable, "Pictures come as " + types + "."));
-            return;
-        }
-        std::string body;
-        HttpProblem problem;
-        if (!read_body(request, reader, body, problem)) {
-            respond_.problem(response, problem);
-            return;
-        }
-        (this->*endpoint->post)(request, response, std::move(body));
+        (this->*find(request.path)->post)(request, response, std::move(exchange.body));  // no length and no chunks is no body
     });
 }
 

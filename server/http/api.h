@@ -32,12 +32,13 @@ public:
     void read_headers(httplib::Request& request, Exchange& exchange) const;
     // Answers; false: it has a body that is to be read first, by with_body().
     bool route(const httplib::Request& request, httplib::Response& response);
-    void with_body(const httplib::Request& request, httplib::Response& response, const httplib::ContentReader& reader);
+    void with_body(const httplib::Request& request, httplib::Response& response);
+    // What becomes of a request, as far as its head alone says.
+    Edge::Judgement judge(const RequestHead& head, const std::string& malformed) const;
     // Whether the declared length of a body alone says that it will be refused.
     bool declared_too_large(const httplib::Request& request) const;
     HttpProblem too_large() const;
     const Responder& respond() const { return respond_; }
-    std::size_t streams() const { return streams_; }  // under way
 
     // Whatever happens inside ends as an answer without internals.
     template <class Work>
@@ -67,15 +68,17 @@ private:
         Handler remove = nullptr;  // DELETE
         bool guarded = false;      // needs a token, where there are any
         bool clients = true, operators = false;
+        bool probe = false;  // waits for nobody
     };
     static const std::vector<Endpoint>& endpoints();
     const Endpoint* find(const std::string& path) const;
     static std::string allow_of(const Endpoint& endpoint);
     bool try_route(const Request& request, Response& response);
-    bool let_in(const Endpoint& endpoint, const Request& request, Response& response);
+    // Why it is refused, as its head alone says; nothing of its answer is made yet.
+    std::optional<HttpProblem> refusal(const Endpoint* endpoint, const Request& request, Exchange& exchange) const;
+    std::optional<HttpProblem> refuse_client(const Endpoint& endpoint, const Request& request, Exchange& exchange) const;
+    std::optional<HttpProblem> refuse_body(const Endpoint& endpoint, const Request& request) const;
     void preflight(const Endpoint* endpoint, const Request& request, Response& response);
-    bool read_body(const Request& request, const httplib::ContentReader& reader, std::string& body, HttpProblem& problem) const;
-    bool refuse_body_headers(const Request& request, Response& response);
 
     void hint(const Request& request, Response& response);
     void alive(const Request& request, Response& response);

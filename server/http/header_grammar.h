@@ -9,6 +9,8 @@ class HeaderGrammar {
 public:
     // False for the first byte that breaks the form. The end of the head, an empty line, begins anew.
     bool take(char c);
+    // The lines after a chunked body have the form of headers.
+    void begin_trailers() { state_ = State::line; }
 
 private:
     enum class State {

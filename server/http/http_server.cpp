@@ -3,11 +3,9 @@
 #include "server/http/http_server.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdint>
-#include <thread>
 
 #include "server/http/api.h"
 #include "server/http/http_server_guard.h"
@@ -20,26 +18,26 @@ namespace {
 using httplib::Request;
 using httplib::Response;
 
-// Clients that keep coming while the service ends: after this they find nobody.
-constexpr std::chrono::seconds kBacklogTime{1};
 // Probes and one or two that scrape.
-constexpr std::size_t kOperators = 8;
+constexpr std::size_t kOperators = 8, kOperatorConnections = 64;
 
 double ms_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-GuardLimits guard_limits(const Config& config, Door door) {
-    GuardLimits limits;
-    limits.header_bytes = config.max_header_bytes;
-    limits.header_lines = config.max_header_lines;
+EdgeLimits edge_limits(const Config& config, Door door) {
+    EdgeLimits limits;
+    limits.request.header_bytes = config.max_header_bytes;
+    limits.request.header_lines = config.max_header_lines;
+    limits.request.body_bytes = config.max_body_bytes;
     // The framing of chunks counts: room for ordinary chunks, none for a body of chunk lines.
-    limits.body_bytes = config.max_body_bytes + config.max_body_bytes / 8 + (64u << 10);
+    limits.request.framed_bytes = config.max_body_bytes + config.max_body_bytes / 8 + (64u << 10);
     limits.request_time = std::chrono::seconds(config.request_timeout_s);
     limits.response_time = std::chrono::seconds(config.response_timeout_s);
     limits.keep_alive = std::chrono::seconds(config.keep_alive_s);
     limits.threads = door == Door::operators ? kOperators : config.queue_capacity + 1 + config.spare_http_threads;
-    limits.waiting_connections = door == Door::operators ? kOperators : config.max_waiting_connections;
+    limits.waiting_connections = door == Door::operators ? kOperatorConnections : config.max_waiting_connections;
+    limits.held_bytes = std::max(config.held_bytes, 2 * config.max_body_bytes);
     return limits;
 }
 
@@ -49,16 +47,18 @@ public:
     Listener(RenderService& service, Jobs* jobs, const Config& config, const Log& log, Door door)
         : service_(service),
           log_(log),
+          limits_(edge_limits(config, door)),
           server_(
-              guard_limits(config, door), [this](Request& request, Exchange& exchange) { api_.read_headers(request, exchange); },
-              [this](Exchange& exchange) { return refuse_connection(exchange); }),
+              limits_, [this](Request& request, Exchange& exchange) { api_.read_headers(request, exchange); },
+              [this](Exchange& exchange) { return refuse_connection(exchange); },
+              [this](const RequestHead& head, const RequestReader& reader) { return api_.judge(head, reader.framing_refusal()); }),
           api_(service, jobs, config, log, server_, door) {
         using Handled = httplib::Server::HandlerResponse;
         server_.set_pre_routing_handler([this](const Request& request, Response& response) {
             return api_.route(request, response) ? Handled::Handled : Handled::Unhandled;
         });
-        server_.Post("/.*", [this](const Request& request, Response& response, const httplib::ContentReader& reader) {
-            api_.with_body(request, response, reader);
+        server_.Post("/.*", [this](const Request& request, Response& response, const httplib::ContentReader&) {
+            api_.with_body(request, response);
         });
         server_.set_expect_100_continue_handler([this](const Request& request, Response& response) {
             // Refused before the body is sent, where its length alone says so.
@@ -70,8 +70,7 @@ public:
             if (!response.body.empty()) return Handled::Unhandled;  // already told
             Exchange& exchange = GuardedServer::exchange();
             exchange.expects_body = true;  // what follows on the connection cannot be trusted
-            api_.respond().problem(response, exchange.fault != Fault::none ? make_problem(kind_of(exchange.fault), "")
-                                                                           : problem_of_status(response.status));
+            api_.respond().problem(response, exchange.fault != Fault::none ? problem_of(exchange.fault) : problem_of_status(response.status));
             return Handled::Handled;
         };
         server_.set_error_handler(on_error);
@@ -96,42 +95,24 @@ public:
         }
         const int error = errno;
         if (port_ <= 0) return "Cannot listen on " + host + " port " + std::to_string(wanted_port) + ": " + why_not_bound(host, error);
-        server_.widen_backlog();
-        listening_ = true;
-        thread_ = std::thread([this] {
-            server_.listen_after_bind();
-            listening_ = false;
-        });
-        // stop() does nothing before the library runs.
-        while (listening_ && !server_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        server_.serve();
+        if (const std::size_t most = server_.most_connections(); most < limits_.threads + limits_.waiting_connections) {
+            log_.warning("few files may be open", {{"connections", std::int64_t(most)}});
+        }
         return "";
     }
 
     void serve(int socket) { server_.serve(socket); }
     int port() const { return port_; }
-    bool listening() const { return listening_; }
+    bool listening() const { return server_.serving(); }
     void drain() { server_.drain(); }
-    // The library would cut answers that come in parts, and reset connections that it has not taken on yet. Events of jobs end at
-    // once, animations with their last frame, or when the service ends all renders.
-    void finish_streams_and_backlog() {
-        const auto end = std::chrono::steady_clock::now() + kBacklogTime;
-        while (listening_ && server_.has_backlog() && std::chrono::steady_clock::now() < end) pause();
-        while (api_.streams() > 0) pause();
-    }
-    void stop() {
-        if (!thread_.joinable()) return;
-        server_.drain();
-        server_.stop();
-        thread_.join();
-    }
+    // Answers what was asked: events of jobs end at once, animations with their last frame, or when the service ends all renders.
+    void stop() { server_.finish(); }
 
 private:
-    static void pause() { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }
-
     std::string refuse_connection(Exchange& exchange) const {
         if (exchange.request_id.empty()) exchange.request_id = new_request_id();
-        const HttpProblem problem =
-            make_problem(kind_of(exchange.fault), exchange.fault == Fault::malformed ? "The request line or a header is malformed." : "");
+        const HttpProblem problem = problem_of(exchange.fault);
         log_.info("refused", {{"status", std::int64_t(status_of(problem))}, {"ms", ms_since(exchange.start)}, {"id", exchange.request_id}});
         count(exchange, status_of(problem));
         return response_text(problem, exchange.request_id);
@@ -158,10 +139,9 @@ private:
 
     RenderService& service_;
     const Log& log_;
+    const EdgeLimits limits_;
     GuardedServer server_;
     Api api_;
-    std::thread thread_;
-    std::atomic<bool> listening_{false};
     int port_ = 0;
 };
 
@@ -208,8 +188,6 @@ void HttpServer::serve_connection(int socket) { impl_->clients.serve(socket); }
 void HttpServer::stop() {
     // The operators' port tells until the end that it is stopping.
     impl_->operators.drain();
-    impl_->clients.drain();
-    impl_->clients.finish_streams_and_backlog();
     impl_->clients.stop();
     impl_->operators.stop();
 }

@@ -84,7 +84,7 @@ constexpr std::array<Row, 27> kRows{{
     {ProblemKind::too_many_jobs, 503, "too-many-jobs", "Too many jobs",
      "As many jobs are waiting or under way as the operator allows (--max-jobs). Those that have ended go first."},
     {ProblemKind::too_many_connections, 503, "too-many-connections", "Too many connections",
-     "More connections are open than the service has room for."},
+     "More connections are open than the service has room for (--waiting-connections), or they hold more bytes (--max-held-mb)."},
     {ProblemKind::client_closed, 499, "client-closed", "The client closed its connection",
      "The connection was closed before the answer, so the render was ended. Nobody reads this but the log."},
     {ProblemKind::deadline_exceeded, 504, "deadline-exceeded", "The render was not done in time",
@@ -109,23 +109,24 @@ const char* reason_phrase(int status) {
 
 }  // namespace
 
-ProblemKind kind_of(Fault fault) {
-    switch (fault) {
-        case Fault::headers_too_large: return ProblemKind::headers_too_large;
-        case Fault::body_too_large: return ProblemKind::body_too_large;
-        case Fault::timeout: return ProblemKind::request_timeout;
-        case Fault::too_many_connections: return ProblemKind::too_many_connections;
-        case Fault::malformed:
-        case Fault::none: break;
-    }
-    return ProblemKind::bad_request;
-}
-
 HttpProblem make_problem(ProblemKind kind, std::string detail) {
     HttpProblem problem;
     problem.kind = kind;
     problem.detail = std::move(detail);
     return problem;
+}
+
+HttpProblem problem_of(Fault fault) {
+    switch (fault) {
+        case Fault::headers_too_large: return make_problem(ProblemKind::headers_too_large, "");
+        case Fault::body_too_large: return make_problem(ProblemKind::body_too_large, "");
+        case Fault::timeout: return make_problem(ProblemKind::request_timeout, "");
+        case Fault::too_many_connections: return make_problem(ProblemKind::too_many_connections, "");
+        case Fault::stopping: return make_problem(ProblemKind::not_ready, "The service is stopping.");
+        case Fault::malformed:
+        case Fault::none: break;
+    }
+    return make_problem(ProblemKind::bad_request, "The request line or a header is malformed.");
 }
 
 HttpProblem method_not_allowed(const std::string& method, const std::string& allow) {
@@ -206,6 +207,7 @@ std::vector<std::pair<std::string, std::string>> headers_of(const HttpProblem& p
     auto headers = problem.headers;
     headers.emplace_back("Cache-Control", "no-store");
     if (problem.kind == ProblemKind::unauthorized) headers.emplace_back("WWW-Authenticate", "Bearer realm=\"penumbra\"");
+    if (problem.kind == ProblemKind::too_many_connections) headers.emplace_back("Retry-After", "1");
     if (problem.kind == ProblemKind::unsupported_media_type) {
         headers.emplace_back("Accept-Post", "application/json");
     }

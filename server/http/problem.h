@@ -55,7 +55,8 @@ struct HttpProblem {
 
 inline constexpr std::string_view kProblemMediaType = "application/problem+json";
 
-ProblemKind kind_of(Fault fault);
+// A limit that was met; the body may be meant.
+HttpProblem problem_of(Fault fault);
 HttpProblem make_problem(ProblemKind kind, std::string detail);
 HttpProblem method_not_allowed(const std::string& method, const std::string& allow);
 // Precondition: response.failure is not none.

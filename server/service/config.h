@@ -39,11 +39,14 @@ struct Config {
     // Renders waiting behind the one that runs. Each waiting one holds a parsed scene (a few MB) and a
     // client; 16 standard renders of 512 x 512 are some seconds on two cores, which clients sit out.
     std::size_t queue_capacity = 16;
-    // Threads beyond the ones that wait for renders: they read bodies, encode pictures and answer
-    // health checks while every place of the queue is taken.
+    // Threads beyond the ones that wait for renders: they parse scenes, encode pictures and answer
+    // what needs no render while every place of the queue is taken.
     std::size_t spare_http_threads = 32;
-    // Connections beyond the threads. More are refused at once with 503.
-    std::size_t max_waiting_connections = 256;
+    // Connections beyond the threads: silent, slow, idle, or waiting for a thread. They take a kilobyte and no thread. More are
+    // refused at once with 503.
+    std::size_t max_waiting_connections = 1024;
+    // Bytes of requests and of answers not yet taken, of all connections: four of the longest bodies.
+    std::size_t held_bytes = 256u << 20;
     // Scenes parsed at the same time: parsing takes up to 26 bytes of memory per byte of JSON.
     std::size_t parse_slots = 4;
 

@@ -2,10 +2,12 @@
 // What is HTTP and not a picture: probes, metrics, methods, origins, compression, traces, tokens, signed addresses.
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <ctime>
 #include <fstream>
 #include <future>
 #include <sstream>
+#include <thread>
 
 #include "process.h"
 #include "server/http/access.h"
@@ -69,7 +71,12 @@ TEST(Metrics, CountWhatHappenedAndAreForOperatorsAlone) {
     EXPECT_EQ(service.post(kScene)->status, 200);
     EXPECT_EQ(service.post("{")->status, 400);
     httplib::Client admin("127.0.0.1", service.server->admin_port());
-    const auto result = admin.Get("/metrics");
+    auto result = admin.Get("/metrics");
+    // An answer is counted when it has been sent: its client may be quicker.
+    for (int tries = 0; tries < 100 && result && result->body.find("status=\"400\"} 1") == std::string::npos; ++tries) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        result = admin.Get("/metrics");
+    }
     ASSERT_TRUE(result);
     EXPECT_THAT(result->get_header_value("Content-Type"), HasSubstr("version=0.0.4"));
     for (const char* line : {"penumbra_http_requests_total{endpoint=\"/v1/render\",status=\"200\"} 2\n",
