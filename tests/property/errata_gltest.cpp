@@ -119,7 +119,7 @@ TEST(Errata, AClosedFurnaceGivesTheGeometricSum) {
     walls.closed = true;
     Shape room = shape(walls, Colour(1));
     room.albedo = Colour(0.5);
-    scene.shapes = {room};
+    scene.shapes.push_back(room);  // GCC 14 takes the assignment of a list for uninitialised
     scene.render.method = "exact";
     scene.render.bounces = 20;
     const ImageF picture = render_linear(scene);
