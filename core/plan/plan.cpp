@@ -259,7 +259,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
                                     : plan.floor.relief          ? MethodChoice{"exact", "the floor has relief"}
                                                                  : choose_method(outline, scene.render.quality);
         if (choice.method == "hrc" && outline.fits && not_exact.empty() && hrc_fits(scene, plan.canvas, limits)) {
-            split = split_lights(scene, least_solved_share(), 0, most_surveyed_pieces());
+            split = split_lights(scene, most_surveyed_pieces());
             choice = choose_split(split, outline, scene.render.quality, choice);
         }
         plan.method = choice.method;
@@ -275,7 +275,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
                               std::to_string(kMostPieces) + " pieces.");
     }
     else if (plan.method == "hybrid") {
-        split = split_lights(scene, 0, most_solved_cost(scene.render.quality), kMostPieces);
+        split = split_lights(scene, kMostPieces);
         if (split.solved.empty() && !pack_outline(scene, 1.0, false, kMostPieces).fits)
             throw DeviceError("The method 'hybrid' cannot take this scene: its outline has more than " +
                               std::to_string(kMostPieces) + " pieces.");

@@ -37,7 +37,7 @@ double length_of(const Piece& piece) {
 
 }  // namespace
 
-LightSplit split_lights(const Scene& scene, double least_share, double most_cost, std::size_t most_pieces) {
+LightSplit split_lights(const Scene& scene, std::size_t most_pieces) {
     LightSplit split;
     const reference::Boundary boundary(scene, most_pieces, false);
     if (!boundary.problems().empty()) return split;
@@ -68,19 +68,18 @@ LightSplit split_lights(const Scene& scene, double least_share, double most_cost
             shining.push_back(boundary.material_of(piece).shines() && solved[static_cast<std::size_t>(shape_of(piece))] != 0);
         return survey_intervals(scene, boundary, &shining) * double(boundary.pieces().size());
     };
-    std::size_t count = 1;
-    for (double solved = weight(lamps[0]); count < lamps.size() && solved < least_share * all; ++count) solved += weight(lamps[count]);
-    double cost = cost_of(count);
-    // Twice as many, as long as they can be had; half as many more at the last.
-    for (std::size_t more = count; count < lamps.size() && cost <= most_cost; more = (more + 1) / 2) {
-        const std::size_t next = std::min(count + more, lamps.size());
-        const double next_cost = cost_of(next);
-        if (next_cost <= most_cost) {
-            count = next;
-            cost = next_cost;
-            more = 4 * more;
-        } else if (more <= count / 4 || more == 1) {
-            break;
+    const double most = most_solved_cost(scene.render.quality);
+    const double most_of_all = 0.5 * most;
+    std::size_t count = lamps.size();
+    // A survey of all takes time where there is much, and finds three intervals or more.
+    double cost = 3 * double(boundary.pieces().size()) <= most_of_all ? cost_of(count) : 2 * most;
+    if (cost > most_of_all) {
+        count = 1;
+        for (double solved = weight(lamps[0]); count < lamps.size() && solved < least_solved_share() * all; ++count) solved += weight(lamps[count]);
+        cost = cost_of(count);
+        while (cost > most && count > 1) {
+            count /= 2;
+            cost = cost_of(count);
         }
     }
     split.cost = cost;

@@ -17,15 +17,13 @@ struct LightSplit {
     bool all() const { return solved.size() == lamps; }
 };
 
-// The brightest lamps: at least one and those that together are `least_share` of all, and as many more as can be solved for
-// `most_cost`. Whether the first of them can is for the caller to see. A lamp counts by the mean of the channels of its radiance times
-// the length of its outline that can be seen, over its extent. `most_pieces` as for pack_outline(); empty where there are more.
-LightSplit split_lights(const Scene& scene, double least_share, double most_cost, std::size_t most_pieces);
+// All lamps where that costs what `auto` would solve them for; else the brightest that together are least_solved_share() of all; where
+// those cost more than most_solved_cost(), as many of them as do not, but at least one. A lamp counts by the mean of the channels of
+// its radiance times the length of its outline that can be seen, over its extent. `most_pieces` as for pack_outline(); empty where
+// there are more.
+LightSplit split_lights(const Scene& scene, std::size_t most_pieces);
 
-// The most that solving may cost.
 double most_solved_cost(Quality quality);
-
-// `auto` does not take a second method for less than this share.
 double least_solved_share();
 
 // The scene in which only the solved shapes shine, without a sky; and the one in which all but they do.
