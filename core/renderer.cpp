@@ -53,7 +53,7 @@ namespace {
 // Two renders of 4096 x 4096.
 constexpr std::size_t kPoolBytes = std::size_t(1) << 30;
 
-// Threads of the solver that share four points.
+// Threads of the solver that share a point.
 constexpr int kSolverLanesOfGpu = 4;
 
 }  // namespace

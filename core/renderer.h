@@ -21,7 +21,7 @@ namespace penumbra {
 struct RendererOptions {
     std::string device = "auto";  // "auto", "cpu", "gpu", or an index as `penumbra info` lists them
     std::string shader_dir;       // when set, shaders are read from here instead of the embedded ones
-    int solver_lanes = 0;         // threads of the method `exact` that share four points, 1 to 8; 0: as the device wants
+    int solver_lanes = 0;         // threads of the method `exact` that share a point, 1, or 2 to 32 of one point each; 0: as the device wants
     std::shared_ptr<const ToneLut> tone_lut{};  // of the tone map "tony"; without it, no scene may ask for that
 };
 

@@ -8,8 +8,11 @@ namespace penumbra::glsl {
 // The method `exact` (docs/methods/exact-gpu.md): its lists, points and cells.
 const int kExactGroupX = 64;  // Mesa 22 vectorises along x only
 const int kExactGroupY = 1;
+// The solver: jobs of four points in a group, threads of a group, and threads that share a point's sectors. One: a thread solves
+// four points at once; more, on a GPU: a thread takes some of the sectors of one point.
 const int kExactSolveGroupX = 32;
-const int kExactLanes = 1;      // threads of the solver that share a job, sector by sector: more on a GPU
+const int kExactSolveThreads = 32;
+const int kExactLanes = 1;
 const int kExactParamsBinding = 0;
 
 // Pixels across a tile, whose points share lists, and across the largest cells. The last tiles' points include those of the
@@ -48,15 +51,19 @@ const int kExactPointsStorage = 3;
 const int kExactCountersStorage = 4;
 const int kExactJobsStorage = 5;
 const int kExactAsksStorage = 6;
+const int kExactToldStorage = 7;
 
 // Counters, in uints. From kExactCountLevel on, four a level: the solver's jobs, and the groups of its dispatch. From
 // kExactCountTiles on, level by level: how many points each tile asks for.
-const int kExactCountEntries = 0;   // texels of entries that lists reserved
-const int kExactCountWork = 1;      // most loop iterations that one list may take, or kExactTooLong
-const int kExactCountSpent = 2;     // points whose loops ran out
-const int kExactCountUnfinished = 3;  // points that go on in another dispatch
 const int kExactCountLevel = 4;
 const int kExactCountTiles = 24;
+// What the host is told, in uints, in a buffer that nothing else uses: one driver (NVIDIA 580) reads counters that are also the group
+// counts of a dispatch back as they were before it. Two of each kind of lists.
+const int kExactToldEntries = 0;    // texels of entries that lists reserved
+const int kExactToldWork = 1;       // most loop iterations that one list may take, or kExactTooLong
+const int kExactToldSpent = 4;      // points whose loops ran out
+const int kExactToldUnfinished = 5; // points that go on in another dispatch
+const int kExactToldCount = 8;
 
 // Kinds of pieces, in the order in which a list holds them. Texels of an entry:
 //   straight: a.xy b.xy
@@ -99,7 +106,7 @@ struct ExactParams {
     int parent_ratio;    // tiles a parent tile is across; 0: one list for all
     int sectors;
     int largest_cell;    // px: larger cells are always split
-    int pad4;
+    int told;            // where lists tell what they took
     float tan_half;      // tangent of half a sector
     int sky_kind;        // 0: none, 1: constant, 2: nodes
     vec4 sky;

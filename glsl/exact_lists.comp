@@ -1,6 +1,6 @@
 // Reads lists of pieces of larger tiles (or one list of all); writes those of smaller tiles: for each tile and sector of
 // directions, the pieces of outline that some point of the tile may see in some direction of the sector, nearer than
-// what surely hides the rest. One thread is one tile and sector.
+// what surely hides the rest. One thread is one tile and sector; with kListLanes, several share the pieces that these ask.
 #version 430 core
 #include "exact.h"
 #include "lib/pick.glsl"
@@ -14,10 +14,11 @@ layout(binding = kExactSectorsUnit) uniform samplerBuffer sectors;
 layout(std430, binding = kExactHeadsStorage) writeonly buffer Heads { uvec4 out_heads[]; };
 layout(std430, binding = kExactEntriesStorage) writeonly buffer Entries { vec4 out_entries[]; };
 layout(std430, binding = kExactLightsStorage) writeonly buffer Lights { vec4 out_lights[]; };
-layout(std430, binding = kExactCountersStorage) buffer Counters { uint counters[]; };
+layout(std430, binding = kExactToldStorage) buffer Told { uint told[]; };
 
 const int kArcs = 1;      // the parent's lists hold arcs
 const int kEllipses = 1;  // and ellipses
+const int kListLanes = 1;  // threads, neighbours, that share a list: more on a GPU
 const float kFar = 1e30;
 const float kSlack = 1e-3;  // px: what hides must hide by this much
 
@@ -125,9 +126,119 @@ void write_head(int list, uint first, uvec4 counts, uvec4 emitting) {
     }
 }
 
+// The pieces that lists are made from: of which kinds, where, and this thread's part of each kind.
+uvec4 counts, lights_of, first_of, part_from, part_to;
+
+// Whether a piece may be seen, no deeper than `limit`; and how deep it reaches.
+bool keeps_straight(uint i, vec2 centre, float limit, out vec4 e, out float high) {
+    float low;
+    bool hides;
+    e = texelFetch(entries, int(first_of.x + i));
+    vec2 a = e.xy - centre;
+    vec2 b = e.zw - centre;
+    return straight_depths(a, b, low, high, hides) && low <= limit && may_be_seen(a, b, 0.0, low);
+}
+
+bool keeps_round(uint place, vec2 centre, float limit, out vec4 e, out float high) {
+    float low;
+    bool hides;
+    e = texelFetch(entries, int(place));
+    vec2 c = e.xy - centre;
+    return round_depths(c, e.z, low, high, hides) && low <= limit && may_be_seen(c, c, e.z, low);
+}
+
+bool keeps_arc(uint place, vec2 centre, float limit, out vec4 e, out vec4 ends, out float high) {
+    bool kept = keeps_round(place, centre, limit, e, high);
+    ends = texelFetch(entries, int(place + 1u));
+    return kept && arc_faces(e.xy - centre, e.z, ends, centre);
+}
+
+// How many of each kind are kept, and how deep the lights among them reach.
+uvec4 count_kept(vec2 centre, float limit, out uvec4 emitting, out float light_high) {
+    uvec4 kept = uvec4(0u);
+    emitting = uvec4(0u);
+    light_high = -kFar;
+    vec4 e, ends;
+    float high;
+    for (uint i = part_from.x; i < part_to.x; ++i) {
+        if (keeps_straight(i, centre, limit, e, high)) {
+            ++kept.x;
+            if (i < lights_of.x) {
+                ++emitting.x;
+                light_high = max(light_high, high);
+            }
+        }
+    }
+    for (uint i = part_from.y; i < part_to.y; ++i) {
+        if (keeps_round(first_of.y + i, centre, limit, e, high)) {
+            ++kept.y;
+            if (i < lights_of.y) {
+                ++emitting.y;
+                light_high = max(light_high, high);
+            }
+        }
+    }
+    if (kArcs != 0) for (uint i = part_from.z; i < part_to.z; ++i) {
+        if (keeps_arc(first_of.z + 2u * i, centre, limit, e, ends, high)) {
+            ++kept.z;
+            if (i < lights_of.z) {
+                ++emitting.z;
+                light_high = max(light_high, high);
+            }
+        }
+    }
+    if (kEllipses != 0) for (uint i = part_from.w; i < part_to.w; ++i) {
+        if (keeps_round(first_of.w + 4u * i, centre, limit, e, high)) {
+            ++kept.w;
+            if (i < lights_of.w) {
+                ++emitting.w;
+                light_high = max(light_high, high);
+            }
+        }
+    }
+    return kept;
+}
+
+shared vec4 lane_low[kExactGroupX], lane_high[kExactGroupX];
+shared uvec4 lane_kept[kExactGroupX], lane_lights[kExactGroupX];
+shared float lane_light_high[kExactGroupX];
+shared uint list_begin[kExactGroupX];
+
+// What any lane of the list knows to be hidden.
+void share_hidden(int of_list, int lane) {
+    lane_low[of_list + lane] = hidden[0];
+    lane_high[of_list + lane] = hidden[1];
+    barrier();
+    for (int i = 0; i < kListLanes; ++i) {
+        hidden[0] = min(hidden[0], lane_low[of_list + i]);
+        hidden[1] = min(hidden[1], lane_high[of_list + i]);
+    }
+}
+
+// Sums over the lanes of a list, and what those before this one keep.
+void share_kept(int of_list, int lane, inout uvec4 kept, inout uvec4 emitting, inout float light_high, out uvec4 before) {
+    barrier();
+    lane_kept[of_list + lane] = kept;
+    lane_lights[of_list + lane] = emitting;
+    lane_light_high[of_list + lane] = light_high;
+    barrier();
+    kept = uvec4(0u);
+    emitting = uvec4(0u);
+    before = uvec4(0u);
+    for (int i = 0; i < kListLanes; ++i) {
+        if (i < lane) before += lane_kept[of_list + i];
+        kept += lane_kept[of_list + i];
+        emitting += lane_lights[of_list + i];
+        light_high = max(light_high, lane_light_high[of_list + i]);
+    }
+}
+
 void main() {
-    ivec2 at = params.origin + ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= params.extent.x || at.y >= params.extent.y) return;
+    ivec2 at = params.origin + ivec2(int(gl_GlobalInvocationID.x) / kListLanes, int(gl_GlobalInvocationID.y));
+    int lane = int(gl_LocalInvocationID.x) % kListLanes;
+    int of_list = int(gl_LocalInvocationID.x) - lane;
+    bool outside = at.x >= params.extent.x || at.y >= params.extent.y;
+    if (kListLanes == 1 && outside) return;
     int row = at.y / params.sectors;
     int sector = at.y - row * params.sectors;
     int list = (row * params.tiles.x + at.x) * params.sectors + sector;
@@ -143,8 +254,8 @@ void main() {
     d1 = normalize(axis + side);
     reach = half_tile * vec3(abs(d0.x) + abs(d0.y), abs(d1.x) + abs(d1.y), abs(axis.x) + abs(axis.y)) + kSlack;
 
-    uvec4 counts = uvec4(params.root_counts);
-    uvec4 lights_of = uvec4(params.root_lights);
+    counts = uvec4(params.root_counts);
+    lights_of = uvec4(params.root_lights);
     uint first = 0u;
     bool dark = false;
     if (params.parent_ratio != 0) {
@@ -154,136 +265,127 @@ void main() {
         dark = first == kExactDark;  // and so is all within
         lights_of = uvec4(rest.y & 0xffffu, rest.y >> 16, rest.z & 0xffffu, rest.z >> 16);
     }
-    uint straights = counts.x, straight_lights = lights_of.x;
-    uint discs = counts.y, disc_lights = lights_of.y;
-    uint arcs = counts.z, arc_lights = lights_of.z;
-    uint ellipses = counts.w, ellipse_lights = lights_of.w;
-    uint first_disc = first + straights;
-    uint first_arc = first_disc + discs;
-    uint first_ellipse = first_arc + 2u * arcs;
+    if (outside) counts = uvec4(0u);
+    first_of = uvec4(first, first + counts.x, first + counts.x + counts.y, first + counts.x + counts.y + 2u * counts.z);
+    part_from = uvec4(0u);
+    part_to = counts;
+    if (kListLanes > 1) {
+        uvec4 share = (counts + uint(kListLanes - 1)) / uint(kListLanes);
+        part_from = min(share * uint(lane), counts);
+        part_to = min(part_from + share, counts);
+    }
 
     // First what hides, then what may be seen of the rest, and where lights begin and end.
     begin_bins();
     float low, high;
     bool hides;
-    for (uint i = 0u; i < straights; ++i) {
-        vec4 e = texelFetch(entries, int(first + i));
+    for (uint i = part_from.x; i < part_to.x; ++i) {
+        vec4 e = texelFetch(entries, int(first_of.x + i));
         vec2 a = e.xy - centre;
         vec2 b = e.zw - centre;
         if (straight_depths(a, b, low, high, hides) && hides) hide_behind(a, b, high);
     }
-    for (uint i = 0u; i < discs; ++i) {
-        vec4 e = texelFetch(entries, int(first_disc + i));
+    for (uint i = part_from.y; i < part_to.y; ++i) {
+        vec4 e = texelFetch(entries, int(first_of.y + i));
         vec2 c = e.xy - centre;
         // A chord across the axis hides as much as a wall.
         vec2 half_chord = vec2(-axis.y, axis.x) * e.z;
         if (round_depths(c, e.z, low, high, hides) && hides) hide_behind(c + half_chord, c - half_chord, high - e.z);
     }
+    if (kListLanes > 1) share_hidden(of_list, lane);
     bool sky = params.sky_kind != 0 && !dark && any(equal(max(hidden[0], hidden[1]), vec4(kFar)));
-    float light_high = -kFar;
-    uint room = 0u;
-    for (uint i = 0u; i < straights; ++i) {
-        vec4 e = texelFetch(entries, int(first + i));
-        vec2 a = e.xy - centre;
-        vec2 b = e.zw - centre;
-        if (straight_depths(a, b, low, high, hides) && may_be_seen(a, b, 0.0, low)) {
-            ++room;
-            if (i < straight_lights) light_high = max(light_high, high);
-        }
-    }
-    for (uint i = 0u; i < discs; ++i) {
-        vec4 e = texelFetch(entries, int(first_disc + i));
-        vec2 c = e.xy - centre;
-        if (round_depths(c, e.z, low, high, hides) && may_be_seen(c, c, e.z, low)) {
-            ++room;
-            if (i < disc_lights) light_high = max(light_high, high);
-        }
-    }
-    if (kArcs != 0) for (uint i = 0u; i < arcs; ++i) {
-        vec4 e = texelFetch(entries, int(first_arc + 2u * i));
-        vec4 ends = texelFetch(entries, int(first_arc + 2u * i + 1u));
-        vec2 c = e.xy - centre;
-        if (round_depths(c, e.z, low, high, hides) && arc_faces(c, e.z, ends, centre) && may_be_seen(c, c, e.z, low)) {
-            room += 2u;
-            if (i < arc_lights) light_high = max(light_high, high);
-        }
-    }
-    if (kEllipses != 0) for (uint i = 0u; i < ellipses; ++i) {
-        vec4 e = texelFetch(entries, int(first_ellipse + 4u * i));
-        vec2 c = e.xy - centre;
-        if (round_depths(c, e.z, low, high, hides) && may_be_seen(c, c, e.z, low)) {
-            room += 4u;
-            if (i < ellipse_lights) light_high = max(light_high, high);
-        }
-    }
+    uvec4 emitting, before = uvec4(0u);
+    float light_high;
+    uvec4 kept = count_kept(centre, kFar, emitting, light_high);
+    if (kListLanes > 1) share_kept(of_list, lane, kept, emitting, light_high, before);
 
     // Beyond the last light nothing matters, unless there is a sky, which what lies beyond may hide.
     bool lit = light_high > -kFar;
     float limit = params.sky_kind != 0 ? kFar : light_high;
-    if (!lit && !sky) room = 0u;
+    if (!lit && !sky) kept = uvec4(0u);
+    if (kListLanes > 1 && params.sky_kind == 0) {
+        // Here a list takes no more room than it needs: every lane must know where its pieces go.
+        float unused;
+        uvec4 sum = kept.x + kept.y + kept.z + kept.w > 0u ? count_kept(centre, limit, emitting, unused) : uvec4(0u);
+        share_kept(of_list, lane, sum, emitting, unused, before);
+        kept = sum;
+    }
+    uint room = kept.x + kept.y + 2u * kept.z + 4u * kept.w;
     uint begin = 0u;
-    if (room > 0u) begin = atomicAdd(counters[kExactCountEntries], room);
+    if (room > 0u && lane == 0) begin = atomicAdd(told[kExactToldEntries + params.told], room);
+    if (kListLanes > 1) {
+        if (lane == 0) list_begin[of_list] = begin;
+        barrier();
+        begin = list_begin[of_list];
+        if (outside) return;
+    }
     bool fits = begin + room <= uint(params.capacity);
     if (room == 0u || !fits) {
-        write_head(list, sky ? kExactOpen : kExactDark, uvec4(0u), uvec4(0u));
+        if (lane == 0) write_head(list, sky ? kExactOpen : kExactDark, uvec4(0u), uvec4(0u));
         return;
     }
 
-    uint to = begin;
-    uvec4 kept = uvec4(0u);
-    uvec4 kept_lights = uvec4(0u);
-    for (uint i = 0u; i < straights; ++i) {
-        vec4 e = texelFetch(entries, int(first + i));
-        if (straight_depths(e.xy - centre, e.zw - centre, low, high, hides) && low <= limit &&
-            may_be_seen(e.xy - centre, e.zw - centre, 0.0, low)) {
+    vec4 e, ends;
+    uint to = begin + before.x;
+    if (kListLanes == 1) {
+        kept = uvec4(0u);
+        emitting = uvec4(0u);
+    }
+    for (uint i = part_from.x; i < part_to.x; ++i) {
+        if (keeps_straight(i, centre, limit, e, high)) {
             out_entries[to] = e;
-            out_lights[to] = texelFetch(lights, int(first + i));
+            out_lights[to] = texelFetch(lights, int(first_of.x + i));
             ++to;
-            ++kept.x;
-            if (i < straight_lights) ++kept_lights.x;
+            if (kListLanes == 1) {
+                ++kept.x;
+                if (i < lights_of.x) ++emitting.x;
+            }
         }
     }
-    for (uint i = 0u; i < discs; ++i) {
-        vec4 e = texelFetch(entries, int(first_disc + i));
-        if (round_depths(e.xy - centre, e.z, low, high, hides) && low <= limit &&
-            may_be_seen(e.xy - centre, e.xy - centre, e.z, low)) {
+    if (kListLanes > 1) to = begin + kept.x + before.y;
+    for (uint i = part_from.y; i < part_to.y; ++i) {
+        if (keeps_round(first_of.y + i, centre, limit, e, high)) {
             out_entries[to] = e;
-            out_lights[to] = texelFetch(lights, int(first_disc + i));
+            out_lights[to] = texelFetch(lights, int(first_of.y + i));
             ++to;
-            ++kept.y;
-            if (i < disc_lights) ++kept_lights.y;
+            if (kListLanes == 1) {
+                ++kept.y;
+                if (i < lights_of.y) ++emitting.y;
+            }
         }
     }
-    if (kArcs != 0) for (uint i = 0u; i < arcs; ++i) {
-        uint place = first_arc + 2u * i;
-        vec4 e = texelFetch(entries, int(place));
-        vec4 ends = texelFetch(entries, int(place + 1u));
-        if (round_depths(e.xy - centre, e.z, low, high, hides) && low <= limit &&
-            may_be_seen(e.xy - centre, e.xy - centre, e.z, low) && arc_faces(e.xy - centre, e.z, ends, centre)) {
+    if (kListLanes > 1) to = begin + kept.x + kept.y + 2u * before.z;
+    if (kArcs != 0) for (uint i = part_from.z; i < part_to.z; ++i) {
+        uint place = first_of.z + 2u * i;
+        if (keeps_arc(place, centre, limit, e, ends, high)) {
             out_entries[to] = e;
             out_entries[to + 1u] = ends;
             out_lights[to] = texelFetch(lights, int(place));
             to += 2u;
-            ++kept.z;
-            if (i < arc_lights) ++kept_lights.z;
+            if (kListLanes == 1) {
+                ++kept.z;
+                if (i < lights_of.z) ++emitting.z;
+            }
         }
     }
-    if (kEllipses != 0) for (uint i = 0u; i < ellipses; ++i) {
-        uint place = first_ellipse + 4u * i;
-        vec4 e = texelFetch(entries, int(place));
-        if (round_depths(e.xy - centre, e.z, low, high, hides) && low <= limit &&
-            may_be_seen(e.xy - centre, e.xy - centre, e.z, low)) {
+    if (kListLanes > 1) to = begin + kept.x + kept.y + 2u * kept.z + 4u * before.w;
+    if (kEllipses != 0) for (uint i = part_from.w; i < part_to.w; ++i) {
+        uint place = first_of.w + 4u * i;
+        if (keeps_round(place, centre, limit, e, high)) {
             for (uint k = 0u; k < 4u; ++k) out_entries[to + k] = texelFetch(entries, int(place + k));
             out_lights[to] = texelFetch(lights, int(place));
             to += 4u;
-            ++kept.w;
-            if (i < ellipse_lights) ++kept_lights.w;
+            if (kListLanes == 1) {
+                ++kept.w;
+                if (i < lights_of.w) ++emitting.w;
+            }
         }
     }
+    if (lane > 0) return;
     uint total = kept.x + kept.y + kept.z + kept.w;
-    write_head(list, total > 0u ? begin : (sky ? kExactOpen : kExactDark), kept, kept_lights);
+    write_head(list, total > 0u ? begin : (sky ? kExactOpen : kExactDark), kept, emitting);
     // Each step of the walk asks every entry; each entry starts and ends at most one interval.
-    bool fits_head = params.wide != 0 ? all(lessThan(kept_lights, uvec4(65536u)))
+    bool fits_head = params.wide != 0 ? all(lessThan(emitting, uvec4(65536u)))
                                       : kept.x < 65536u && kept.y < 65536u && kept.z < 256u && kept.w < 256u && total < 20000u;
-    atomicMax(counters[kExactCountWork], !fits_head ? kExactTooLong : params.wide != 0 ? 0u : (2u * total + 3u) * (total + 13u));
+    atomicMax(told[kExactToldWork + params.told], !fits_head ? kExactTooLong : params.wide != 0 ? 0u : (2u * total + 3u) * (total + 13u));
 }

@@ -62,10 +62,12 @@ private:
         return from.substr(0, slash + 1) + name;
     }
 
-    // `const int NAME = ...;` takes the value given for NAME.
+    // `const int NAME = ...;` and `#define NAME ...` take the value given for NAME.
     void give_constant(std::string& line) const {
         for (const auto& [name, value] : given_) {
             const std::string start = "const int " + name + " = ";
+            const std::string define = "#define " + name + " ";
+            if (line.rfind(define, 0) == 0) line = define + std::to_string(value);
             if (line.rfind(start, 0) == 0) line = start + std::to_string(value) + line.substr(line.find(';'));
         }
     }

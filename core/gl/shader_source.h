@@ -32,7 +32,7 @@ struct FlatShader {
 
 // Reads `name` and, once each, what it includes. Names in `layout(...)` that a `const int` gives a number
 // are replaced by it: GLSL 4.30 wants literals there. Reads from `folder` unless it is empty.
-// `constants` replace the values of `const int`s of those names: a program for what a scene needs and no more, since
+// `constants` replace the values of `const int`s and `#define`s of those names: a program for what a scene needs and no more, since
 // Mesa 22 runs both sides of every branch. Throws DeviceError when a file is missing.
 FlatShader flatten_shader(std::string_view name, const std::string& folder = {}, const ShaderConstants& constants = {});
 

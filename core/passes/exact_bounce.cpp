@@ -69,6 +69,7 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass
         if (!part.jobs.tiles.empty()) parts.push_back(std::move(part));
     }
     const PackedOutline& outline = exact.outline;
+    told_.clear(told_.bytes());
     for (int i = 0; i < exact.bounces; ++i) {
         gl::ComputeProgram& program =
             solver_for({outline.counts[2] > 0, outline.counts[3] > 0, band.params.sky_kind, false, true, true, 0});
@@ -78,7 +79,8 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass
             band.params.list_origin = part.origin;
             // One part's lists serve all bounces.
             if (i == 0 || parts.size() > 1)
-                record("exact lists", {part.tiles.x, part.tiles.y * exact.sectors}, [&] { return make_lists(plan, band); });
+                do record("exact lists", {part.tiles.x, part.tiles.y * exact.sectors}, [&] { return make_lists(plan, band); });
+                while (!lists_fit());
             const int jobs = static_cast<int>(part.jobs.tiles.size());
             const gl::BufferTexture nodes(GL_RGBA32F, part.jobs.nodes.data(), part.jobs.nodes.size() * 16);
             jobs_ = at_least(std::move(jobs_), GL_R32UI, part.jobs.tiles.size() * 4);
@@ -88,22 +90,16 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass
                        [&] { return delta.surfaces(plan, {part.origin, part.area, jobs_, nodes, jobs}, band.lights); });
             record("bounce", {4 * jobs, 1}, [&] {
                 PassWork work;
-                const std::vector<std::uint32_t> zero(glsl::kExactCountTiles);
-                counters_.write(0, zero.data(), zero.size() * 4);
                 band.value.bind_image(glsl::kExactValueImage, GL_READ_WRITE);
                 band.slope_x.bind_image(glsl::kExactSlopeXImage, GL_READ_WRITE);
                 band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_WRITE);
                 nodes.bind_texture(glsl::kExactNodesUnit);
                 glsl::ExactParams params = band.params;
                 params.jobs = jobs;
-                params.extent = {params.jobs, 1};
+                params.extent = {divided_up(jobs, group_jobs()) * group_threads(), 1};
                 if (in_slices()) params.extent = band.solver_rows(divided_up(jobs, glsl::kExactSolveGroupX));
                 run_solver(params, band, work, 0, [&](const glsl::ExactParams& p) { return program.dispatch(p, p.extent, in_slices() ? static_cast<std::size_t>(p.extent.x) : 0); });
-                std::uint32_t spent = 0;
-                counters_.read(4 * glsl::kExactCountSpent, &spent, sizeof(spent));
-                if (spent != 0)
-                    throw TooDense("The scene is too dense for the method 'exact' on this device: at " + std::to_string(spent) +
-                                   " points of surfaces its loops ran out of iterations.");
+                if (in_slices()) check_spent("points of surfaces");
                 return work;
             });
         }
@@ -116,6 +112,7 @@ void ExactPass::bounce(const Plan& plan, const PassSettings& settings, DeltaPass
         std::memcpy(&brightest, &bits[1], 4);
         if (double(change) <= exact.converged * double(brightest)) break;
     }
+    if (exact.bounces > 0) check_spent("points of surfaces");
     settings.give(std::move(band.value));
     settings.give(std::move(band.slope_x));
     settings.give(std::move(band.slope_y));

@@ -27,6 +27,16 @@ gl::BufferTexture sector_table(const ExactPlan& plan) {
     return gl::BufferTexture(GL_RGBA32F, table.data(), table.size() * sizeof(glm::vec4));
 }
 
+constexpr std::size_t kMostListTexels = (std::size_t(1) << 27) / 16;
+
+void check_lists(std::size_t texels, std::uint32_t work) {
+    if (work == glsl::kExactTooLong)
+        throw TooDense("The scene is too dense for the method 'exact': from one tile, a sector of directions holds more pieces of "
+                       "outline than can be counted.");
+    if (texels > kMostListTexels)
+        throw TooDense("The scene is too dense for the method 'exact': its lists of what may be seen need " + std::to_string(texels >> 16) + " MiB.");
+}
+
 // No pixel's mean radiance is above that of the brightest source, colour by colour. Where pieces shine differently from place to place
 // no such bound is kept.
 glm::vec4 most_light(const PackedOutline& outline, const Sky& sky, double radiance_scale, bool surfaces) {
@@ -48,6 +58,7 @@ ExactPass::ExactPass(const std::string& shader_dir)
       fill_("exact_fill.comp", sizeof(glsl::ExactParams), shader_dir),
       reflect_("exact_reflect.comp", sizeof(glsl::ExactParams), shader_dir),
       counters_(GL_R32UI, 4 * glsl::kExactCountTiles),
+      told_(GL_R32UI, 4 * glsl::kExactToldCount),
       change_(GL_R32UI, 8) {}
 
 
@@ -56,11 +67,16 @@ std::size_t ExactPass::bytes() const {
            lights_.bytes() + points_.bytes() + asks_.bytes() + counters_.bytes() + means_.bytes() + elements_.bytes() + elements_before_.bytes();
 }
 
-gl::ComputeProgram& ExactPass::lists_for(const ExactPlan& exact) {
-    const std::pair key(exact.outline.counts[2] > 0, exact.outline.counts[3] > 0);
+int ExactPass::list_lanes(std::size_t lists) const {
+    if (lanes_ == 1) return 1;
+    return lists > 300'000 ? 1 : lists > 50'000 ? 4 : 16;
+}
+
+gl::ComputeProgram& ExactPass::lists_for(const ExactPlan& exact, int lanes) {
+    const std::tuple key(exact.outline.counts[2] > 0, exact.outline.counts[3] > 0, lanes);
     const auto found = lists_.find(key);
     if (found != lists_.end()) return found->second;
-    const gl::ShaderConstants constants = {{"kArcs", key.first ? 1 : 0}, {"kEllipses", key.second ? 1 : 0}};
+    const gl::ShaderConstants constants = {{"kArcs", std::get<0>(key) ? 1 : 0}, {"kEllipses", std::get<1>(key) ? 1 : 0}, {"kListLanes", lanes}};
     return lists_.emplace(key, gl::ComputeProgram("exact_lists.comp", sizeof(glsl::ExactParams), shader_dir_, constants)).first->second;
 }
 
@@ -74,14 +90,16 @@ gl::ComputeProgram& ExactPass::solver_for(const Needs& needs) {
                                            {"kSurfaces", needs.surfaces ? 1 : 0},
                                            {"kNodes", needs.nodes ? 1 : 0},
                                            {"kMoment", needs.moment},
+                                           {"kExactSolveGroupX", group_jobs()},
+                                           {"kExactSolveThreads", group_threads()},
                                            {"kExactLanes", lanes_},
+                                           {"EXACT_WIDTH", lanes_ > 1 ? 1 : 4},
                                            {"kBudget", static_cast<int>(long_loops_ ? kMostWorkOfLongLoops : kMostWork)}};
     return solvers_.emplace(needs, gl::ComputeProgram("exact_solve.comp", sizeof(glsl::ExactParams), shader_dir_, constants)).first->second;
 }
 
 PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
     const ExactPlan& exact = plan.exact;
-    gl::ComputeProgram& program = lists_for(exact);
     PassWork work;
     const auto lists_of = [&](glm::ivec2 tiles) {
         return static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y) * static_cast<std::size_t>(exact.sectors);
@@ -91,12 +109,19 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
     const auto make = [&](glm::ivec2 tiles, int tile_px, int ratio, bool wide, gl::StorageBuffer& heads,
                           gl::StorageBuffer& entries, gl::StorageBuffer& lights) {
         heads = at_least(std::move(heads), GL_RGBA32UI, lists_of(tiles) * (wide ? 32 : 16));
-        std::size_t capacity = std::max<std::size_t>(entries.bytes() / 16, 4 * lists_of(tiles) + 1024);
+        // Where lanes share sectors nothing waits for what lists took: they get ample room, and at the end of the frame it is seen
+        // whether it was enough (lists_fit).
+        const bool ask_later = lanes_ > 1;
+        const std::size_t first_room = ask_later ? std::min(12 * lists_of(tiles) + 1024, kMostListTexels) : 4 * lists_of(tiles) + 1024;
+        std::size_t capacity = std::max({entries.bytes() / 16, first_room, ask_later ? list_texels_[wide ? 1 : 0] : 0});
+        const std::size_t told = wide ? 2 : 0;
+        const int lanes = list_lanes(lists_of(tiles));
+        gl::ComputeProgram& program = lists_for(exact, lanes);
         for (;;) {
             entries = at_least(std::move(entries), GL_RGBA32F, capacity * 16);
             lights = at_least(std::move(lights), GL_RGBA32F, capacity * 16);
             const std::uint32_t zero[2] = {};
-            counters_.write(0, zero, sizeof(zero));
+            told_.write(4 * told, zero, sizeof(zero));
             glsl::ExactParams params = band.params;
             params.tiles = tiles;
             params.tile_px = tile_px;
@@ -104,6 +129,7 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
             params.parent_tiles = band.coarse_tiles;
             params.capacity = static_cast<int>(capacity);
             params.wide = wide ? 1 : 0;
+            params.told = static_cast<int>(told);
             params.extent = {tiles.x, tiles.y * exact.sectors};
             if (ratio == 0) {
                 band.root_entries.bind_texture(glsl::kExactEntriesUnit);
@@ -114,24 +140,24 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
                 coarse_lights_.bind_texture(glsl::kExactLightsUnit);
             }
             band.sectors.bind_texture(glsl::kExactSectorsUnit);
-            counters_.bind_storage(glsl::kExactCountersStorage);
+            told_.bind_storage(glsl::kExactToldStorage);
             heads.bind_storage(glsl::kExactHeadsStorage);
             entries.bind_storage(glsl::kExactEntriesStorage);
             lights.bind_storage(glsl::kExactLightsStorage);
-            work.dispatches += program.dispatch(params, params.extent);
+            work.dispatches += program.dispatch(params, {params.extent.x * lanes, params.extent.y});
+            if (ask_later) {
+                work.bytes += list_texels_[wide ? 1 : 0] * std::size_t(32) + heads.bytes();
+                return std::uint32_t(0);
+            }
             std::uint32_t used[2] = {};
-            counters_.read(0, used, sizeof(used));
-            if (used[1] == glsl::kExactTooLong)
-                throw TooDense("The scene is too dense for the method 'exact': from one tile, a sector of directions holds more pieces of "
-                               "outline than can be counted.");
+            told_.read(4 * told, used, sizeof(used));
             if (used[0] <= capacity) {
+                check_lists(used[0], used[1]);
                 work.bytes += used[0] * std::size_t(32) + heads.bytes();
                 return used[1];
             }
             capacity = used[0] + std::size_t(used[0]) / 4;
-            if (capacity * 16 > (std::size_t(1) << 27))
-                throw TooDense("The scene is too dense for the method 'exact': its lists of what may be seen need " +
-                               std::to_string(capacity >> 16) + " MiB.");
+            check_lists(capacity, used[1]);
         }
     };
     int ratio = 0;
@@ -149,6 +175,31 @@ PassWork ExactPass::make_lists(const Plan& plan, Band& band) {
     return work;
 }
 
+bool ExactPass::lists_fit() {
+    if (lanes_ == 1) return true;
+    std::uint32_t told[4] = {};
+    told_.read(0, told, sizeof(told));
+    bool fit = true;
+    const gl::StorageBuffer* const entries[] = {&entries_, &coarse_entries_};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const std::size_t texels = told[2 * i];
+        list_texels_[i] = texels;
+        check_lists(texels, told[2 * i + 1]);
+        if (texels <= entries[i]->bytes() / 16) continue;
+        fit = false;
+        list_texels_[i] = std::min(texels + texels / 4, kMostListTexels);
+    }
+    return fit;
+}
+
+void ExactPass::check_spent(const char* points) const {
+    std::uint32_t spent = 0;
+    told_.read(4 * glsl::kExactToldSpent, &spent, sizeof(spent));
+    if (spent != 0)
+        throw TooDense("The scene is too dense for the method 'exact' on this device: at " + std::to_string(spent) + " " + points +
+                       " its loops ran out of iterations.");
+}
+
 PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& band, int level, int moment) {
     PassWork work;
     glsl::ExactParams params = band.params;
@@ -163,7 +214,7 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
     points_.bind_storage(glsl::kExactPointsStorage);
     jobs_.bind_storage(glsl::kExactJobsStorage);
     counters_.bind_storage(glsl::kExactCountersStorage);
-    work.dispatches += gather_.dispatch(params, params.extent);
+    work.dispatches += gather_.of({{"kExactSolveGroupX", group_jobs()}}).dispatch(params, params.extent);
     band.value.bind_image(glsl::kExactValueImage, GL_READ_WRITE);
     band.slope_x.bind_image(glsl::kExactSlopeXImage, GL_READ_WRITE);
     band.slope_y.bind_image(glsl::kExactSlopeYImage, GL_READ_WRITE);
@@ -184,8 +235,7 @@ PassWork ExactPass::solve(const Plan& plan, const DistanceField& field, Band& ba
 }
 
 // Dispatches until every point is done: one whose loops have spent their iterations goes on in the next. Where loops may be long, as often
-// as might be needed: it is seldom more than once, and what waits for nothing is quicker. One such driver (NVIDIA 580) also reads back
-// counters that are the group counts of a dispatch as they were before it, and so tells nothing of who is done.
+// as might be needed: it is seldom more than once, and what waits for nothing is quicker.
 void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work, int moment,
                            const std::function<int(const glsl::ExactParams&)>& dispatch) {
     heads_.bind_texture(glsl::kExactHeadsUnit);
@@ -199,6 +249,7 @@ void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work,
         elements_.bind_texture(glsl::kExactElementsUnit);
     }
     counters_.bind_storage(glsl::kExactCountersStorage);
+    told_.bind_storage(glsl::kExactToldStorage);
     counters_.bind_indirect();
     for (int done = 0;;) {
         work.dispatches += dispatch(params);
@@ -207,10 +258,10 @@ void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work,
         if (band.most_dispatches == 1 || (long_loops_ && done == band.most_dispatches)) break;
         if (long_loops_) continue;
         std::uint32_t unfinished = 0;
-        counters_.read(4 * glsl::kExactCountUnfinished, &unfinished, sizeof(unfinished));
+        told_.read(4 * glsl::kExactToldUnfinished, &unfinished, sizeof(unfinished));
         if (unfinished == 0) break;
         unfinished = 0;
-        counters_.write(4 * glsl::kExactCountUnfinished, &unfinished, sizeof(unfinished));
+        told_.write(4 * glsl::kExactToldUnfinished, &unfinished, sizeof(unfinished));
     }
 }
 
@@ -285,6 +336,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             zero[glsl::kExactCountLevel + 4 * level + 2] = zero[glsl::kExactCountLevel + 4 * level + 3] = 1;
         counters_ = at_least(std::move(counters_), GL_R32UI, zero.size() * 4);
         counters_.write(0, zero.data(), zero.size() * 4);
+        told_.clear(told_.bytes());
         means_ = at_least(std::move(means_), GL_R32F, (static_cast<std::size_t>(params.tiles.x) + 1) * 4);
         record("exact lists", {params.tiles.x, params.tiles.y * exact.sectors}, [&] { return make_lists(plan, band); });
 
@@ -347,18 +399,18 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             work.dispatches = fill_.of({{"kSigned", moment > 0 ? 1 : 0}}).dispatch(p, p.extent, settings.pixels);
             return work;
         };
-        record("exact fill", {plan.lit.size.x, end_lit - first_lit}, [&] {
-            PassWork work = fill(0);
-            counters_.read(0, counted.data(), counted.size() * 4);
+        record("exact fill", {plan.lit.size.x, end_lit - first_lit}, [&] { return fill(0); });
+        counters_.read(0, counted.data(), counted.size() * 4);
+        record("exact fill", {plan.lit.size.x, 0}, [&] {
+            PassWork work;
             work.points = std::accumulate(counted.begin() + glsl::kExactCountTiles, counted.end(), std::size_t(0));
             return work;
         });
-        if (see_cells) see_cells(band.leaf, row, band.area.y);
-        if (counted[glsl::kExactCountSpent] != 0)
-            throw TooDense("The scene is too dense for the method 'exact' on this device: at " +
-                           std::to_string(counted[glsl::kExactCountSpent]) + " points its loops ran out of iterations.");
+        const bool fits = lists_fit();
+        if (fits) check_spent("points");
+        if (fits && see_cells) see_cells(band.leaf, row, band.area.y);
         // Radiance times direction, at the same points and in the same cells: its edges are the same.
-        for (int moment = 1; moment < moments; ++moment) {
+        for (int moment = 1; fits && moment < moments; ++moment) {
             record("exact moments", {plan.lit.size.x, end_lit - first_lit}, [&] {
                 counters_.write(0, zero.data(), std::size_t(4) * glsl::kExactCountTiles);
                 PassWork work;
@@ -371,6 +423,7 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         settings.give(std::move(band.slope_x));
         settings.give(std::move(band.slope_y));
         settings.give(std::move(band.leaf));
+        if (!fits) row -= exact.band_rows;  // once more
     }
 }
 

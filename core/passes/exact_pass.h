@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <compare>
 #include <functional>
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -33,7 +35,8 @@ public:
     explicit ExactPass(const std::string& shader_dir);
     // On a device that ends no long loops: a point that has much to see is done in one dispatch, or a few.
     void allow_long_loops() { long_loops_ = true; }
-    // Threads that share the sectors of four points, before the first frame: more keep a GPU busy, and llvmpipe has none to spare.
+    // Threads that share the sectors of a point, before the first frame: many keep a GPU busy. With one, a thread solves four points at
+    // once, as llvmpipe wants it.
     void share_sectors(int lanes) { lanes_ = lanes; }
 
     // `record(name, extent, run)` times each step: lists, points, cells, fill.
@@ -57,6 +60,14 @@ private:
     struct Band;
     Band prepare(const Plan& plan, const Sky& sky) const;
     PassWork make_lists(const Plan& plan, Band& band);
+    // Whether the lists had room, where that is asked at the end of the frame; if not, the next lists will have it.
+    bool lists_fit();
+    void check_spent(const char* points) const;
+    // Of the solver's groups.
+    int group_jobs() const { return lanes_ > 1 ? std::max(32 / lanes_, 1) : glsl::kExactSolveGroupX; }
+    // Threads that share a list: many where there are few lists.
+    int list_lanes(std::size_t lists) const;
+    int group_threads() const { return lanes_ > 1 ? 4 * group_jobs() * lanes_ : glsl::kExactSolveThreads; }
     PassWork solve(const Plan& plan, const DistanceField& field, Band& band, int level, int moment = 0);
     // Lets the light bounce between surfaces: afterwards `elements_` tells what each shines with.
     void bounce(const Plan& plan, const PassSettings& settings, DeltaPass& delta, const Record& record, Band& band);
@@ -75,22 +86,23 @@ private:
         int moment;  // 0: mean radiance; 1, 2: times the direction's x or y
         auto operator<=>(const Needs&) const = default;
     };
-    gl::ComputeProgram& lists_for(const ExactPlan& exact);
+    gl::ComputeProgram& lists_for(const ExactPlan& exact, int lanes);
     gl::ComputeProgram& solver_for(const Needs& needs);
 
     std::string shader_dir_;
     int lanes_ = 1;
     bool long_loops_ = false;
-    std::map<std::pair<bool, bool>, gl::ComputeProgram> lists_;
+    std::map<std::tuple<bool, bool, int>, gl::ComputeProgram> lists_;
     std::map<Needs, gl::ComputeProgram> solvers_;
     gl::ComputeProgram split_;
-    gl::ComputeProgram gather_;
+    gl::ProgramForms gather_;
     gl::ComputeProgram mean_;
     gl::ProgramForms fill_;
     gl::ComputeProgram reflect_;
     gl::StorageBuffer coarse_heads_, coarse_entries_, coarse_lights_;
     gl::StorageBuffer heads_, entries_, lights_;
-    gl::StorageBuffer asks_, points_, jobs_, counters_, means_;
+    gl::StorageBuffer asks_, points_, jobs_, counters_, told_, means_;
+    std::size_t list_texels_[2] = {};  // that tiles' and larger tiles' lists took
     gl::StorageBuffer elements_, elements_before_, change_;
 };
 

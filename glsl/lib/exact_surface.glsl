@@ -1,11 +1,11 @@
 // Radiance of surfaces that reflect, along directions from a point. Reads `entries`, `lights`, `surfaces` and `elements` of
 // the program that includes it, for one point at a time.
 
-// Of any x: from the vector form.
+// Of any x: from the form for several.
 float angle_of(vec2 v) {
     vec2 a = abs(v);
     float small = min(a.x, a.y) / max(max(a.x, a.y), 1e-30);
-    float angle = arctangent(vec4(small)).x;
+    float angle = first_of(arctangent(reals(small)));
     if (a.y > a.x) angle = 1.5707963267948966 - angle;
     if (v.x < 0.0) angle = 3.141592653589793 - angle;
     return v.y < 0.0 ? -angle : angle;

@@ -68,7 +68,7 @@ Offsets exact_fields() {
     return {FIELD(ExactParams, origin), FIELD(ExactParams, extent), FIELD(ExactParams, canvas),
             FIELD(ExactParams, border), FIELD(ExactParams, tiles), FIELD(ExactParams, parent_tiles),
             FIELD(ExactParams, first_row), FIELD(ExactParams, tile_px), FIELD(ExactParams, parent_ratio),
-            FIELD(ExactParams, sectors), FIELD(ExactParams, largest_cell), FIELD(ExactParams, pad4),
+            FIELD(ExactParams, sectors), FIELD(ExactParams, largest_cell), FIELD(ExactParams, told),
             FIELD(ExactParams, tan_half), FIELD(ExactParams, sky_kind), FIELD(ExactParams, sky),
             FIELD(ExactParams, sky_nodes), FIELD(ExactParams, cell), FIELD(ExactParams, level),
             FIELD(ExactParams, first_point), FIELD(ExactParams, tile_points),

@@ -309,7 +309,7 @@ TEST(ExactBytes, SkippingAllButCellsChangesNone) {
     }
 }
 
-// As a GPU solves: threads share the sectors, in another order of sums.
+// As a GPU solves: a thread takes some sectors of one point, in another order of sums.
 TEST(ExactLanes, ShareTheSectorsAndAddUp) {
     RendererOptions options = test_options();
     options.solver_lanes = 4;
@@ -324,9 +324,34 @@ TEST(ExactLanes, ShareTheSectorsAndAddUp) {
     for (const Scene& scene : {test_scene(), test_scene(33, 90, Quality::draft), gradient, bouncing, test_scene(1, 1)}) {
         const ImageF a = std::get<ImageF>(four.render(scene).picture), b = std::get<ImageF>(one.render(scene).picture);
         const double floor = 1e-6 * mean(b);
-        for (std::size_t i = 0; i < a.data.size(); ++i) ASSERT_NEAR(a.data[i], b.data[i], 2e-6 * b.data[i] + floor) << i;
+        for (std::size_t i = 0; i < a.data.size(); ++i) ASSERT_NEAR(a.data[i], b.data[i], 4e-6 * b.data[i] + 2 * floor) << i;
         EXPECT_EQ(std::get<ImageF>(four.render(scene).picture).data, a.data) << "twice";
     }
+}
+
+// Nothing waits for what lists took; when it was more than they had room for, the frame is made again.
+TEST(ExactLanes, ListsThatDidNotFitAreMadeAgain) {
+    RendererOptions options = test_options();
+    options.solver_lanes = 8;
+    Renderer eight(options);
+    options.solver_lanes = 1;
+    Renderer one(options);
+    Scene scene = exact(canvas(120, 120));
+    for (int i = 0; i < 576; ++i) {
+        const Point at(5.0 * (i % 24) + 2.2 + 0.3 * (i % 7), 5.0 * (i / 24) + 2.3 + 0.2 * (i % 5));
+        scene.shapes.push_back(shape(Circle{at, 0.3}, i % 3 == 0 ? Colour(1, 0.5, 0.2) : Colour(0)));
+    }
+    const RenderResult first = eight.render(scene), second = eight.render(scene);
+    const auto lists = [](const RenderStats& stats) {
+        for (const PassStats& pass : stats.passes)
+            if (pass.name == "exact lists") return pass.dispatches;
+        return std::uint64_t(0);
+    };
+    EXPECT_GT(lists(first.stats), lists(second.stats)) << "the first frame did fit: the test tells nothing";
+    const ImageF a = std::get<ImageF>(first.picture), b = std::get<ImageF>(one.render(scene).picture);
+    EXPECT_EQ(std::get<ImageF>(second.picture).data, a.data);
+    const double floor = 1e-6 * mean(b);
+    for (std::size_t i = 0; i < a.data.size(); ++i) ASSERT_NEAR(a.data[i], b.data[i], 1e-5 * b.data[i] + floor) << i;
 }
 
 TEST(ExactBytes, RendersAreRepeatableWhateverWasRenderedBefore) {
@@ -401,7 +426,7 @@ TEST(ExactLarge, InBands) {
     if (shared_renderer().device().kind == "cpu") {
         EXPECT_LT(band, 530) << "one band proves nothing";
     }
-    expect_truth_at(scene, 400, {band - 1, band, band + 1, 529}, 3e-4);
+    expect_truth_at(scene, 400, {std::min(band - 1, 528), std::min(band, 529), std::min(band + 1, 529), 529}, 3e-4);
 }
 
 }  // namespace
