@@ -78,44 +78,26 @@ void consider_straights(reals ahead) {
 
 #else
 
-void found_nearer(int entry, float end, float start_depth, float end_depth, float depth) {
-    nearest = depth;
-    near_entry = float(entry);
-    near_end = end;
-    near_far = max(start_depth, end_depth);
-}
-
 // As above, with branches in place of choices: neighbouring threads mostly take the same.
-void found_start(float start, float depth) {
-    if (start < next && (start >= near_end || depth <= near_far)) next = start;
-}
-
 void consider(int entry, Span span) {
     if (!span.seen || span.end <= now) return;
-    if (span.start > now) found_start(span.start, span.start_depth);
-    else if (span.depth < nearest) found_nearer(entry, span.end, span.start_depth, span.end_depth, span.depth);
+    if (span.start > now) {
+        if (span.start < next && (span.start >= near_end || span.start_depth <= near_far)) next = span.start;
+    } else if (span.depth < nearest) {
+        nearest = span.depth;
+        near_entry = float(entry);
+        near_end = span.end;
+        near_far = max(span.start_depth, span.end_depth);
+    }
 }
 
-// straight_span, no further than is needed of each.
+// The next piece is on its way while this one is looked at.
 void consider_straights(float ahead) {
-    vec2 p = vec2(px, py), w = axis + side * ahead;
     vec4 e = texelFetch(entries, first_straight);
     for (int i = first_straight; i < first_disc; ++i) {
-        vec4 coming = texelFetch(entries, i + 1);  // on its way while this one is looked at
-        vec2 a = e.xy - p, b = e.zw - p, way = e.zw - e.xy;
+        vec4 coming = texelFetch(entries, i + 1);
+        consider(i, straight_span(e.x, e.y, e.z, e.w, ahead));
         e = coming;
-        float rise = a.x * way.y - a.y * way.x;
-        if (rise >= 0.0) continue;
-        float start_depth = axis.x * b.x + axis.y * b.y, end_depth = axis.x * a.x + axis.y * a.y;
-        float end = end_depth > 0.0 ? (side.x * a.x + side.y * a.y) / end_depth : kBehind;
-        if (end <= now || max(start_depth, end_depth) <= 0.0) continue;
-        float start = start_depth > 0.0 ? (side.x * b.x + side.y * b.y) / start_depth : -kBehind;
-        if (start > now) {
-            found_start(start, start_depth);
-        } else {
-            float depth = rise / min(w.x * way.y - w.y * way.x, -1e-30);
-            if (depth < nearest) found_nearer(i, end, start_depth, end_depth, depth);
-        }
     }
 }
 
