@@ -128,6 +128,8 @@ struct ExactParams {
     ivec2 fill_first;    // first of those pixels, of the band
     int fill_row;        // where their rows begin in the image
     int pad7;
+    ivec2 fill_size;     // how many of them, along x and y
+    ivec2 pad8;
     vec4 most;           // no pixel has more light, by colour
 };
 

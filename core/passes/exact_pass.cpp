@@ -50,7 +50,6 @@ ExactPass::ExactPass(const std::string& shader_dir)
       counters_(GL_R32UI, 4 * glsl::kExactCountTiles),
       change_(GL_R32UI, 8) {}
 
-
 std::size_t ExactPass::bytes() const {
     return coarse_heads_.bytes() + coarse_entries_.bytes() + coarse_lights_.bytes() + heads_.bytes() + entries_.bytes() +
            lights_.bytes() + points_.bytes() + asks_.bytes() + counters_.bytes() + means_.bytes() + elements_.bytes() + elements_before_.bytes();
@@ -343,8 +342,9 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             band.leaf.bind_image(glsl::kExactLeafImage, GL_READ_ONLY);
             results[moment]->bind_image(glsl::kExactRadianceImage, GL_WRITE_ONLY);
             glsl::ExactParams p = params;
-            p.extent = {plan.lit.size.x, end_lit - first_lit};
-            work.dispatches = fill_.of({{"kSigned", moment > 0 ? 1 : 0}}).dispatch(p, p.extent, settings.pixels);
+            p.fill_size = {plan.lit.size.x, end_lit - first_lit};
+            p.extent = (p.fill_first % 2 + p.fill_size + 1) / 2;  // blocks of two by two
+            work.dispatches = fill_.of({{"kSigned", moment > 0 ? 1 : 0}}).dispatch(p, p.extent, settings.pixels / 4);
             return work;
         };
         record("exact fill", {plan.lit.size.x, end_lit - first_lit}, [&] {
