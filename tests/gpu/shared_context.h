@@ -10,6 +10,7 @@
 #include "core/passes/distance_pass.h"
 #include "core/passes/frame.h"
 #include "core/passes/jump_flood_pass.h"
+#include "core/passes/near_bitmaps_pass.h"
 #include "core/passes/scene_buffers.h"
 #include "core/plan/plan.h"
 #include "core/plan/shape_lists.h"
