@@ -24,10 +24,8 @@ std::vector<glm::ivec2> tiles_near_bitmaps(const Plan& plan, const PackedScene& 
         if (static_cast<int>(record[0].x) != glsl::kShapeBitmap) continue;
         const glm::dvec2 low = glm::dvec2(record[2].x, record[2].y) + glm::dvec2(plan.grid.border);
         const glm::dvec2 high = low + glm::dvec2(record[2].z, record[2].w);
-        const glm::dvec2 last = glm::dvec2(count - 1);
-        const glm::ivec2 from(glm::max(glm::floor((low - beside) / double(side)), glm::dvec2(0)));
-        const glm::ivec2 to(glm::min(glm::floor((high + beside) / double(side)), last));
-        if (low.x - beside > plan.grid.size.x || low.y - beside > plan.grid.size.y) continue;
+        const glm::ivec2 from(glm::clamp(glm::floor((low - beside) / double(side)), glm::dvec2(0), glm::dvec2(count)));
+        const glm::ivec2 to(glm::clamp(glm::floor((high + beside) / double(side)), glm::dvec2(-1), glm::dvec2(count - 1)));
         for (int y = from.y; y <= to.y; ++y)
             for (int x = from.x; x <= to.x; ++x) asked[static_cast<std::size_t>(y) * static_cast<std::size_t>(count.x) + static_cast<std::size_t>(x)] = 1;
     }

@@ -64,7 +64,7 @@ Field run_distance(const Scene& scene, const Plan& plan, const PassSettings& set
 }
 
 Plan pass_plan(Scene scene) {
-    scene.render.keep = static_cast<std::uint32_t>(Saving::constant);
+    scene.render.keep = static_cast<std::uint32_t>(Saving::constant) | static_cast<std::uint32_t>(Saving::reach);
     return make_plan(scene, {});
 }
 
