@@ -163,6 +163,9 @@ void plan_split(Plan& plan, const Scene& scene, const LightSplit& split, const D
     if (split.solved.empty()) return;
     const Scene part = solved_part(scene, split.solved);
     PackedOutline outline = pack_outline(part, 1.0, false, kMostPieces);
+    if (!outline.fits)
+        throw DeviceError("The method 'hybrid' cannot take this scene: the outline about the lamps that it solves has more than " +
+                          std::to_string(kMostPieces) + " pieces.");
     outline.mean_intervals = split.cost / std::max(double(outline.pieces), 1.0);
     plan.exact = plan_exact(part, std::move(outline), plan.canvas, limits.software);
     if (split.all() && brightest(scene.sky) <= 0 && saves(scene.render, Saving::sampling)) plan.hrc = {};
@@ -281,8 +284,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         if (!outline.fits)
             throw DeviceError("The method 'exact' cannot take this scene: its outline has more than " +
                               std::to_string(kMostPieces) + " pieces.");
-    }
-    else if (plan.method == "hybrid") {
+    } else if (plan.method == "hybrid") {
         split = split_lights(scene, kMostPieces);
         if (split.solved.empty() && !pack_outline(scene, 1.0, false, kMostPieces).fits)
             throw DeviceError("The method 'hybrid' cannot take this scene: its outline has more than " +
