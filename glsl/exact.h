@@ -26,6 +26,7 @@ const int kExactLightsUnit = 7;       // RGBA32F: radiance of an entry's piece, 
 const int kExactSectorsUnit = 9;      // RGBA32F: cos and sin of the sector's axis, its angle, unused
 const int kExactSkyUnit = 10;         // RGBA32F: two texels a node: sky integral from angle 0, sky radiance and part
 const int kExactAsksUnit = 11;        // R32UI: a word for each row of a tile, a bit for each point that is asked for
+const int kExactCellsUnit = 11;       // R32UI: x | y << 16 of the cells of the level before that were split
 const int kExactPointsUnit = 11;      // R32UI: x | y << 8 in the tile, tile by tile
 const int kExactValueUnit = 8;
 const int kExactJobsUnit = 12;        // R32UI: tile | four points of it << 24; of surfaces: tile
@@ -48,6 +49,7 @@ const int kExactPointsStorage = 3;
 const int kExactCountersStorage = 4;
 const int kExactJobsStorage = 5;
 const int kExactAsksStorage = 6;
+const int kExactCellsStorage = 7;
 
 // Counters, in uints. From kExactCountLevel on, four a level: the solver's jobs, and the groups of its dispatch. From
 // kExactCountTiles on, level by level: how many points each tile asks for.
@@ -56,6 +58,7 @@ const int kExactCountWork = 1;      // most loop iterations that one list may ta
 const int kExactCountSpent = 2;     // points whose loops ran out
 const int kExactCountUnfinished = 3;  // points that go on in another dispatch
 const int kExactCountLevel = 4;
+const int kExactCountCells = 20;      // and level, but for the last: cells that were split
 const int kExactCountTiles = 24;
 
 // Kinds of pieces, in the order in which a list holds them. Texels of an entry:
@@ -128,6 +131,8 @@ struct ExactParams {
     ivec2 fill_first;    // first of those pixels, of the band
     int fill_row;        // where their rows begin in the image
     int pad7;
+    ivec2 fill_size;     // how many of them, along x and y
+    ivec2 pad8;
     vec4 most;           // no pixel has more light, by colour
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <compare>
 #include <functional>
@@ -90,6 +91,7 @@ private:
     gl::ComputeProgram reflect_;
     gl::StorageBuffer coarse_heads_, coarse_entries_, coarse_lights_;
     gl::StorageBuffer heads_, entries_, lights_;
+    std::array<gl::StorageBuffer, 2> cells_;  // that were split, of this level and of the one before
     gl::StorageBuffer asks_, points_, jobs_, counters_, means_;
     gl::StorageBuffer elements_, elements_before_, change_;
 };

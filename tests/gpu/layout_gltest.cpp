@@ -78,7 +78,7 @@ Offsets exact_fields() {
             FIELD(ExactParams, first_ask), FIELD(ExactParams, pad1), FIELD(ExactParams, root_counts),
             FIELD(ExactParams, root_lights), FIELD(ExactParams, wide), FIELD(ExactParams, jobs),
             FIELD(ExactParams, list_origin), FIELD(ExactParams, window),
-            FIELD(ExactParams, fill_first), FIELD(ExactParams, fill_row), FIELD(ExactParams, pad7), FIELD(ExactParams, most)};
+            FIELD(ExactParams, fill_first), FIELD(ExactParams, fill_row), FIELD(ExactParams, pad7), FIELD(ExactParams, fill_size), FIELD(ExactParams, pad8), FIELD(ExactParams, most)};
 }
 
 Offsets delta_fields() {
