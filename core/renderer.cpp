@@ -32,6 +32,7 @@
 #include "core/passes/picture_reader.h"
 #include "core/passes/closed_pass.h"
 #include "core/passes/lone_pass.h"
+#include "core/passes/near_bitmaps_pass.h"
 #include "core/passes/reference_pass.h"
 #include "core/passes/resolve_pass.h"
 #include "core/passes/scene_buffers.h"
@@ -64,6 +65,7 @@ struct Renderer::Impl {
           samplers(options.shader_dir),
           distance(options.shader_dir),
           jump_flood(options.shader_dir),
+          near_bitmaps(options.shader_dir),
           cascade(options.shader_dir),
           rc_fix(options.shader_dir),
           resolve(options.shader_dir),
@@ -114,6 +116,7 @@ struct Renderer::Impl {
     gl::TexturePool textures{kPoolBytes};
     DistancePass distance;
     JumpFloodPass jump_flood;
+    NearBitmapsPass near_bitmaps;
     CascadePass cascade;
     RcFixPass rc_fix;
     ResolvePass resolve;
@@ -253,15 +256,17 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
     buffers.bind();
 
     ShapeLists lists;
-    if (plan.list_shapes) record.host("shape lists", plan.grid.size, [&] { lists = list_shapes(packed, plan.grid, plan.first_distance_row, plan.end_distance_row); });
+    if (plan.list_shapes) record.host("shape lists", plan.grid.size, [&] { lists = list_shapes(packed, plan); });
 
     DistanceField field;
     if (plan.shape_slices.empty())
         field = DistancePass::empty_field(plan);
     else
-        record.pass("distance", {plan.grid.size.x, plan.end_distance_row - plan.first_distance_row}, [&] { return distance.run(plan, lists, settings, field); });
+        record.pass("distance", {plan.grid.size.x, plan.end_distance_row - plan.first_distance_row}, [&] { return distance.run(plan, packed, lists, settings, field); });
     if (!plan.jump_steps.empty())
         record.pass("jump flood", plan.grid.size, [&] { return jump_flood.run(plan, settings, field); });
+    if (plan.near_bitmaps)
+        record.pass("near bitmaps", plan.grid.size, [&] { return near_bitmaps.run(plan, packed, settings, field); });
 
     if (!plan.closed_tiles.empty())
         record.pass("closed", {glsl::kExactTile * glsl::kExactTile, static_cast<int>(plan.closed_tiles.size())}, [&] { return closed.run(plan, settings, field); });
@@ -415,7 +420,7 @@ RenderResult Renderer::Impl::render(const Scene& asked, const std::string& not_e
         lost_rays.read(0, &lost, sizeof(lost));
         stats.lost_rays = lost;
     }
-    if (lists.tiles.x > 0) stats.skipped.push_back(saved_by_lists(lists, packed, plan.grid));
+    if (lists.tiles.x > 0) stats.skipped.push_back(saved_by_lists(lists, packed, plan.grid, plan.distance_reach_px));
     stats.total_ms = ms_since(start);
     return result;
 }

@@ -29,9 +29,9 @@ vec3 pixel_radiance(ivec2 pixel) {
     if (kEdges == 0 || params.has_shapes == 0) return floor_radiance(pixel);
     float d = pixel_distance(pixel);
     bool solid = d <= 0.0;
-    if (kEdges == 1) return solid ? solid_radiance(pixel) : floor_radiance(pixel);
+    if (kEdges == 1) return pick(floor_radiance(pixel), solid_radiance(pixel, solid), bvec3(solid));
     float coverage = params.antialias != 0 ? clamp(0.5 - d, 0.0, 1.0) : (solid ? 1.0 : 0.0);
-    vec3 shape = solid_radiance(pixel);
+    vec3 shape = solid_radiance(pixel, coverage > 0.0);
     vec4 beside = floor_beside(pixel, solid && coverage < 1.0);
     vec3 free = floor_radiance(pixel);
     if (solid) free = beside.a > 0.0 ? beside.rgb / beside.a : shape;
@@ -59,8 +59,8 @@ vec3 dithered(vec3 value, ivec2 pixel, float levels) {
 void main() {
     ivec2 texel = params.origin + ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = imageSize(picture_image);
-    if (texel.x >= size.x || texel.y >= size.y) return;
-    ivec2 pixel = texel + params.first_pixel;
+    // No return for threads beside the picture, since Mesa 22 would mask all that follows: what they store is dropped.
+    ivec2 pixel = min(texel, size - 1) + params.first_pixel;
     vec3 radiance = max(pixel_radiance(pixel) * params.exposure, vec3(0.0));
     vec3 encoded = srgb_encode(clamp(tonemap(radiance, params.white), 0.0, 1.0));
     if (kComposeDither != 0) encoded = dithered(encoded, pixel, float(params.levels));

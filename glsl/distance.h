@@ -10,11 +10,14 @@ const int kDistanceGroupY = 4;
 const int kDistanceParamsBinding = 0;
 const int kDistanceImageBinding = 0;  // r32f
 const int kMaterialImageBinding = 1;  // r32i
-const int kTileRangesUnit = 4;        // rg32i: first and end in the list of a tile
+const int kTileJobsUnit = 4;          // rgba32i: a tile's first pixel, and first and end of its list
 const int kTileShapesUnit = 5;        // r32i: the shapes of all lists
 
-// Side of a tile that has its own list of shapes, px. A vector of invocations lies in one tile.
+// Side of a tile that has its own list of shapes, px. A vector of invocations is a row of one tile.
 const int kDistanceTile = 8;
+
+// 1: a row of invocations is a tile, which asks its own list. 0: a row of the grid, which asks all shapes of the slice.
+const int kDistanceByTiles = 0;
 
 struct DistanceParams {
     ivec2 origin;       // first pixel of this slice, in grid pixels
@@ -24,8 +27,8 @@ struct DistanceParams {
     int end_shape;
     int continues;      // 1: merge with what earlier slices wrote
     float far_px;       // distance of an empty scene: the grid's diagonal (errata E-2)
-    int tiles;          // along x; 0: no lists, this slice's shapes are asked
-    int first_range;    // of this slice's lists
+    int jobs;           // tiles that ask
+    int pad0;
 };
 
 #ifdef __cplusplus

@@ -29,6 +29,7 @@ const int kExactLightsUnit = 7;       // RGBA32F: radiance of an entry's piece, 
 const int kExactSectorsUnit = 9;      // RGBA32F: cos and sin of the sector's axis, its angle, unused
 const int kExactSkyUnit = 10;         // RGBA32F: two texels a node: sky integral from angle 0, sky radiance and part
 const int kExactAsksUnit = 11;        // R32UI: a word for each row of a tile, a bit for each point that is asked for
+const int kExactCellsUnit = 11;       // R32UI: x | y << 16 of the cells of the level before that were split
 const int kExactPointsUnit = 11;      // R32UI: x | y << 8 in the tile, tile by tile
 const int kExactValueUnit = 8;
 const int kExactJobsUnit = 12;        // R32UI: tile | four points of it << 24; of surfaces: tile
@@ -51,11 +52,13 @@ const int kExactPointsStorage = 3;
 const int kExactCountersStorage = 4;
 const int kExactJobsStorage = 5;
 const int kExactAsksStorage = 6;
-const int kExactToldStorage = 7;
+const int kExactCellsStorage = 7;  // of exact_split.comp
+const int kExactToldStorage = 7;   // of the lists and the solver
 
 // Counters, in uints. From kExactCountLevel on, four a level: the solver's jobs, and the groups of its dispatch. From
 // kExactCountTiles on, level by level: how many points each tile asks for.
 const int kExactCountLevel = 4;
+const int kExactCountCells = 20;      // and level, but for the last: cells that were split
 const int kExactCountTiles = 24;
 // What the host is told, in uints, in a buffer that nothing else uses: one driver (NVIDIA 580) reads counters that are also the group
 // counts of a dispatch back as they were before it. Two of each kind of lists.
@@ -135,6 +138,8 @@ struct ExactParams {
     ivec2 fill_first;    // first of those pixels, of the band
     int fill_row;        // where their rows begin in the image
     int pad7;
+    ivec2 fill_size;     // how many of them, along x and y
+    ivec2 pad8;
     vec4 most;           // no pixel has more light, by colour
 };
 

@@ -1,6 +1,7 @@
 // Decides for each cell of a level whether its four corners tell all of it: it is free of shapes, the same edges bound what
 // its corners see (then no shadow's edge crosses it: docs/methods/exact-gpu.md), and the light bends little enough. A cell
-// that fails is split, and asks for the points that its four parts lack. One thread is one cell.
+// that fails is split, and asks for the points that its four parts lack. One thread is one cell; of the smaller ones, one of those whose
+// larger cell was split.
 #version 430 core
 #include "exact.h"
 
@@ -12,6 +13,9 @@ layout(binding = kExactSlopeXImage, rgba32f) readonly uniform image2D slope_x_im
 layout(binding = kExactSlopeYImage, rgba32f) readonly uniform image2D slope_y_image;
 layout(binding = kExactLeafImage, r32ui) uniform uimage2D leaf_image;
 layout(std430, binding = kExactAsksStorage) buffer AskedBits { uint asks[]; };
+layout(std430, binding = kExactCellsStorage) writeonly buffer SplitCells { uint split_cells[]; };
+layout(std430, binding = kExactCountersStorage) buffer Counters { uint counters[]; };
+layout(binding = kExactCellsUnit) uniform usamplerBuffer larger_cells;
 layout(binding = kExactSkyUnit) uniform samplerBuffer mean_light;
 layout(binding = kExactHeadsUnit) uniform usamplerBuffer heads;
 
@@ -28,6 +32,12 @@ void main() {
     ivec2 cell = params.origin + ivec2(gl_GlobalInvocationID.xy);
     if (cell.x >= params.extent.x || cell.y >= params.extent.y) return;
     int h = params.cell;
+    if (h < kExactCell) {
+        int index = cell.y * params.extent.x + cell.x;
+        if (index >= 4 * int(counters[kExactCountCells + params.level - 1])) return;
+        uint larger = texelFetch(larger_cells, index / 4).r;
+        cell = 2 * ivec2(int(larger & 0xffffu), int(larger >> 16)) + ivec2(index & 1, index >> 1 & 1);
+    }
     ivec2 corner = cell * h;  // first pixel, of the band
     ivec4 window = params.window * (kExactTile / h);
     if (params.ask_first != 0) {
@@ -38,11 +48,6 @@ void main() {
         return;
     }
     if (any(lessThan(cell, window.xy)) || any(greaterThanEqual(cell, window.zw))) return;
-    if (h < kExactCell) {
-        // Only where the larger cell was split.
-        ivec2 larger = corner / (2 * h) * (2 * h);
-        if (int(imageLoad(leaf_image, larger).r) >= 2 * h) return;
-    }
     ivec2 pixel = corner + ivec2(0, params.first_row);
     if (pixel.x >= params.canvas.x || pixel.y >= params.canvas.y) return;
 
@@ -101,6 +106,7 @@ void main() {
     if (!split) return;
 
     int half_cell = h / 2;
+    split_cells[atomicAdd(counters[kExactCountCells + params.level], 1u)] = uint(cell.x) | uint(cell.y) << 16;
     imageStore(leaf_image, corner, uvec4(half_cell));
     ask(corner + ivec2(half_cell, 0));
     ask(corner + ivec2(0, half_cell));

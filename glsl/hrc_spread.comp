@@ -12,17 +12,27 @@ layout(binding = kHrcSumUnit) uniform sampler2D sum_texture;
 
 const float kTurn = 6.28318530717958648;
 
-vec4 weighted(ivec2 point, float weight) {
-    vec4 sum = texelFetch(sum_texture, clamp(point, ivec2(0), params.points - 1), 0);
-    return weight * sum.a * vec4(sum.rgb, 1.0);
+float room_at(vec2 p) {
+    return texelFetch(distance_texture, clamp(ivec2(floor(p)) + params.border, ivec2(0), textureSize(distance_texture, 0) - 1), 0).r;
 }
+
+vec4 light_at(ivec2 point) { return texelFetch(sum_texture, clamp(point, ivec2(0), params.points - 1), 0); }
+
+vec2 place_of(ivec2 point) { return params.first_point + params.cell * vec2(clamp(point, ivec2(0), params.points - 1)); }
 
 // Whether nothing stands between the pixel's centre and a lattice point.
 bool sees(vec2 p, ivec2 point, inout int budget) {
-    vec2 way = params.first_point + params.cell * vec2(clamp(point, ivec2(0), params.points - 1)) - p;
+    vec2 way = place_of(point) - p;
     float far = length(way);
     vec3 radiance;
     return far < 1e-3 || march(p, way / far, 0.0, far, params.domain, params.border, budget, radiance) != kRayBlocked;
+}
+
+// Whether that is still to be found out: not of a point inside a shape, which has no light to give, nor where free discs about the
+// two overlap.
+bool in_doubt(vec2 p, float room, ivec2 point) {
+    vec2 place = place_of(point);
+    return light_at(point).a > 0.0 && room + room_at(place) - kHalfDiagonal <= distance(p, place);
 }
 
 void main() {
@@ -32,21 +42,44 @@ void main() {
     vec2 at = (p - params.first_point) / params.cell;
     ivec2 base = ivec2(floor(at));
     vec2 f = at - vec2(base);
-    float room = texelFetch(distance_texture, clamp(pixel + params.border, ivec2(0), textureSize(distance_texture, 0) - 1), 0).r;
+    float room = room_at(p);
     // Farther from all shapes than from the four lattice points it sees them all.
     bool open = room <= 0.0 || room > 1.4143 * params.cell;
     int budget = kMarchBudget;
     vec4 weights = vec4((1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y);
-    for (int k = open ? 4 : 0; k < 4; ++k)
-        if (weights[k] > 0.0 && !sees(p, base + ivec2(k & 1, k >> 1), budget)) weights[k] = 0.0;
+    // A bit each: a vector of the device's marches as often as one of its pixels is in doubt, not four times.
+    uint doubts = 0u, hidden = 0u;
+    for (int k = 0; k < 4; ++k)
+        if (!open && weights[k] > 0.0 && in_doubt(p, room, base + ivec2(k & 1, k >> 1))) doubts |= 1u << k;
+    while (doubts != 0u) {
+        int k = findLSB(doubts);
+        doubts &= doubts - 1u;
+        if (!sees(p, base + ivec2(k & 1, k >> 1), budget)) hidden |= 1u << k;
+    }
     vec4 sum = vec4(0.0);
-    for (int k = 0; k < 4; ++k) sum += weighted(base + ivec2(k & 1, k >> 1), weights[k]);
+    for (int k = 0; k < 4; ++k) {
+        vec4 light = light_at(base + ivec2(k & 1, k >> 1));
+        float weight = ((hidden >> k) & 1u) != 0u ? 0.0 : weights[k] * light.a;
+        sum += weight * vec4(light.rgb, 1.0);
+    }
     // Where it sees none, those around them.
-    for (int k = open || sum.a > 0.0 ? 16 : 0; k < 16; ++k) {
+    const uint inner = 0x660u;  // of four by four, the four that were asked
+    uint around = open || sum.a > 0.0 ? 0u : 0xffffu & ~inner;
+    doubts = 0u;
+    for (int k = around != 0u ? 0 : 16; k < 16; ++k)
+        if (((around >> k) & 1u) != 0u && in_doubt(p, room, base + ivec2(k & 3, k >> 2) - 1)) doubts |= 1u << k;
+    while (doubts != 0u) {
+        int k = findLSB(doubts);
+        doubts &= doubts - 1u;
+        if (!sees(p, base + ivec2(k & 3, k >> 2) - 1, budget)) around &= ~(1u << k);
+    }
+    while (around != 0u) {
+        int k = findLSB(around);
+        around &= around - 1u;
         ivec2 step = ivec2(k & 3, k >> 2) - 1;
         vec2 away = vec2(step) - f;
-        bool inner = step == clamp(step, ivec2(0), ivec2(1));
-        if (!inner && sees(p, base + step, budget)) sum += weighted(base + step, 1.0 / dot(away, away));
+        vec4 light = light_at(base + step);
+        sum += light.a / dot(away, away) * vec4(light.rgb, 1.0);
     }
     imageStore(radiance_image, pixel, sum.a > 0.0 ? vec4(sum.rgb / (sum.a * kTurn), 1.0) : vec4(0.0));
 }

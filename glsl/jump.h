@@ -14,7 +14,14 @@ const int kJumpSeedsUnit = 4;          // rg16i texture
 const int kJumpMaterialUnit = 5;       // r32i texture
 const int kNoSeed = -32768;
 
-// The three programs of jump flooding share these.
+// Where only what is near a bitmap matters, no jumps: a window of so many pixels to each side is searched, columns then rows.
+const int kNearSeeds = 6;
+const int kNearTile = 8;           // a row of invocations is a tile
+const int kNearSeedsImage = 0;     // r8ui: 1 where a bitmap shows
+const int kNearColumnsImage = 2;   // r8ui: kNearSeeds + 1 less the way up or down to the nearest such pixel; 0: none so near
+const int kNearTilesUnit = 4;      // rg32i: first pixel of each tile
+
+// The programs of jump flooding and of the window share these; the window's dispatches are of `step` tiles.
 struct JumpParams {
     ivec2 origin;  // first pixel of this slice
     ivec2 extent;  // grid size

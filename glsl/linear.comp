@@ -11,10 +11,11 @@ layout(rgba32f, binding = kComposeImageBinding) writeonly uniform image2D linear
 void main() {
     ivec2 texel = params.origin + ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = imageSize(linear_image);
-    if (texel.x >= size.x || texel.y >= size.y) return;
-    ivec2 pixel = texel + params.first_pixel;
+    // No return for threads beside the picture, since Mesa 22 would mask all that follows: what they store is dropped.
+    ivec2 pixel = min(texel, size - 1) + params.first_pixel;
     bool solid = params.has_shapes != 0 && pixel_distance(pixel) <= 0.0;
-    vec3 radiance = solid ? solid_radiance(pixel) : floor_radiance(pixel);
+    // Without a branch, whose both sides would run with lanes masked.
+    vec3 radiance = pick(floor_radiance(pixel), solid_radiance(pixel, solid), bvec3(solid));
     // A scene may hold negative zeros, the picture none.
     imageStore(linear_image, texel, vec4(pick(radiance, vec3(0.0), equal(radiance, vec3(0.0))), solid ? 0.0 : 1.0));
 }

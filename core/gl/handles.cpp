@@ -24,6 +24,7 @@ std::size_t texel_bytes(GLenum format) {
         case GL_R32I:
         case GL_R32UI:
         case GL_RG16I: return 4;
+        case GL_R8UI: return 1;
         default: return 0;
     }
 }
@@ -112,18 +113,23 @@ void Texture2D::fill(GLenum format, GLenum type, const void* value) {
     check_errors("filling a texture");
 }
 
-void Texture2D::clear(GLuint value) {
+template <class Value, class Clear>
+void Texture2D::clear_by(Value value, Clear clear_buffer) {
     GLuint framebuffer = 0;
     glGenFramebuffers(1, &framebuffer);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
     glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, id_, 0);
-    const GLuint values[4] = {value, value, value, value};
-    glClearBufferuiv(GL_COLOR, 0, values);
+    const Value values[4] = {value, value, value, value};
+    clear_buffer(GL_COLOR, 0, values);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     glDeleteFramebuffers(1, &framebuffer);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     check_errors("clearing a texture");
 }
+
+void Texture2D::clear(GLuint value) { clear_by(value, glClearBufferuiv); }
+void Texture2D::clear(GLint value) { clear_by(value, glClearBufferiv); }
+void Texture2D::clear(GLfloat value) { clear_by(value, glClearBufferfv); }
 
 std::size_t buffer_texture_bytes(std::size_t bytes) {
     std::size_t padded = std::max<std::size_t>((bytes + 15) / 16 * 16, 272);

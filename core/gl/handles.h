@@ -57,10 +57,15 @@ public:
     // As read(), the other way.
     void write(GLenum format, GLenum type, const void* in);
     void fill(GLenum format, GLenum type, const void* value);
-    // All texels of an unsigned integer format, on the device.
+    // All texels of a format of this kind, on the device.
     void clear(GLuint value);
+    void clear(GLint value);
+    void clear(GLfloat value);
 
 private:
+    template <class Value, class Clear>
+    void clear_by(Value value, Clear clear_buffer);
+
     GLenum format_ = 0;
     glm::ivec2 size_{0};
     Filter filter_ = Filter::nearest;

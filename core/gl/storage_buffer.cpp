@@ -63,9 +63,8 @@ void StorageBuffer::write(std::size_t offset, const void* data, std::size_t byte
 
 void StorageBuffer::read(std::size_t offset, void* out, std::size_t bytes) const {
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    // The barrier is all that OpenGL asks for. One driver (NVIDIA 580) still reads what was there before a dispatch that does no more
-    // to the buffer than atomic operations whose results nobody uses.
-    glFinish();
+    // One driver (NVIDIA 580) reads counters that were the group counts of an indirect dispatch as they were before it, whatever the
+    // barrier, and after glFinish too: what is read must lie in another buffer (docs/decisions/0079).
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer_);
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), out);
     check_errors("reading a buffer back");

@@ -40,10 +40,18 @@ glsl::ComposeParams params_of(const Plan& plan, const Scene& scene, const FrameL
     params.has_shapes = scene.shapes.empty() ? 0 : 1;
     light.radiance->bind_texture(glsl::kComposeRadianceUnit);
     light.lights->bind_texture(glsl::kComposeLightsUnit);
-    light.field.distance.bind_texture(glsl::kComposeDistanceUnit);
-    light.field.material.bind_texture(glsl::kComposeMaterialUnit);
+    light.field.distance.bind_image(glsl::kComposeDistanceImage, GL_READ_ONLY);
+    light.field.material.bind_image(glsl::kComposeMaterialImage, GL_READ_ONLY);
     out.bind_image(glsl::kComposeImageBinding, GL_WRITE_ONLY);
     return params;
+}
+
+// For programs that are made for the scene: one texel stands for light that is black everywhere (or is all of a picture of one pixel).
+void add_light_constants(const Plan& plan, const FrameLight& light, const gl::Texture2D& lit, gl::ShaderConstants& constants) {
+    const glm::ivec2 texel(1, 1);
+    if (plan.needs.general || plan.canvas == texel || plan.lit.size == texel) return;
+    constants.emplace_back("kComposeLights", light.lights->size() == texel ? 0 : 1);
+    constants.emplace_back("kComposeLit", lit.size() == texel ? 0 : 1);
 }
 
 PassWork work_of(int dispatches, const gl::Texture2D& out) {
@@ -75,6 +83,7 @@ PassWork ComposePass::display(const Plan& plan, const Scene& scene, double expos
     constants.emplace_back("kComposeLook", look_index(output.look.value_or("none")));
     constants.emplace_back("kComposeDither", output.dither == Dither::none ? 0 : 1);
     if (!plan.needs.general) constants.emplace_back("kEdges", scene.shapes.empty() ? 0 : output.antialias ? 2 : 1);
+    add_light_constants(plan, light, lit_, constants);
     gl::ComputeProgram& program = display_.of(constants);
     glsl::ComposeParams params = params_of(plan, scene, light, first, out);
     params.levels = out.format() == GL_RGBA16 ? 65535 : 255;
@@ -87,7 +96,9 @@ PassWork ComposePass::display(const Plan& plan, const Scene& scene, double expos
 
 PassWork ComposePass::linear(const Plan& plan, const Scene& scene, const FrameLight& light, const PassSettings& settings, glm::ivec2 first,
                              gl::Texture2D& out) {
-    gl::ComputeProgram& program = linear_.of(scene_constants(plan.needs));
+    gl::ShaderConstants constants = scene_constants(plan.needs);
+    add_light_constants(plan, light, lit_, constants);
+    gl::ComputeProgram& program = linear_.of(constants);
     const glsl::ComposeParams params = params_of(plan, scene, light, first, out);
     lit_.bind_texture(glsl::kComposeLitUnit);
     return work_of(program.dispatch(params, out.size(), settings.pixels), out);

@@ -64,8 +64,9 @@ struct ExactPass::Band {
 
     // So many groups of the solver in rows, each short enough for a dispatch.
     glm::ivec2 solver_rows(int groups) const {
-        const auto row = static_cast<int>(std::clamp<std::int64_t>(kSolverSlice / std::clamp<std::int64_t>(point_work, 1, kMostWork), kFewestGroups, 65535));
-        return {row * glsl::kExactSolveGroupX, divided_up(groups, row)};
+        const auto most = static_cast<int>(std::clamp<std::int64_t>(kSolverSlice / std::clamp<std::int64_t>(point_work, 1, kMostWork), kFewestGroups, 65535));
+        const int rows = std::max(divided_up(groups, most), 1);
+        return {divided_up(groups, rows) * glsl::kExactSolveGroupX, rows};  // what a row lacks, its groups without a job, is run as well: few
     }
 };
 

@@ -61,10 +61,9 @@ ExactPass::ExactPass(const std::string& shader_dir)
       told_(GL_R32UI, 4 * glsl::kExactToldCount),
       change_(GL_R32UI, 8) {}
 
-
 std::size_t ExactPass::bytes() const {
     return coarse_heads_.bytes() + coarse_entries_.bytes() + coarse_lights_.bytes() + heads_.bytes() + entries_.bytes() +
-           lights_.bytes() + points_.bytes() + asks_.bytes() + counters_.bytes() + means_.bytes() + elements_.bytes() + elements_before_.bytes();
+           lights_.bytes() + points_.bytes() + asks_.bytes() + cells_[0].bytes() + cells_[1].bytes() + counters_.bytes() + means_.bytes() + elements_.bytes() + elements_before_.bytes();
 }
 
 int ExactPass::list_lanes(std::size_t lists) const {
@@ -330,6 +329,8 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         points_ = at_least(std::move(points_), GL_R32UI, room * 4);
         asks_ = at_least(std::move(asks_), GL_R32UI, kLevels * tiles * glsl::kExactTileRows * 4);
         asks_.clear(kLevels * tiles * glsl::kExactTileRows * 4);
+        const std::size_t halves = kLevels - 2;  // of the cells of the last level but one, at most all are split
+        for (gl::StorageBuffer& cells : cells_) cells = at_least(std::move(cells), GL_R32UI, (tiles << (2 * halves)) * 4);
         jobs_ = at_least(std::move(jobs_), GL_R32UI, tiles * (1 + band.levels.back().of_tile / 4) * 4);
         std::vector<std::uint32_t> zero(glsl::kExactCountTiles + kLevels * tiles);
         for (std::size_t level = 0; level < kLevels; ++level)  // groups along y and z
@@ -359,8 +360,20 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             heads_.bind_texture(glsl::kExactHeadsUnit);
             glsl::ExactParams p = params;
             p.ask_first = ask_first ? 1 : 0;
+            p.level = level;
             p.cell = glsl::kExactCell >> level;
             p.extent = params.tiles * (glsl::kExactTile / p.cell) + (ask_first ? 1 : 0);
+            cells_[level % 2].bind_storage(glsl::kExactCellsStorage);
+            counters_.bind_storage(glsl::kExactCountersStorage);
+            if (level > 0) {
+                cells_[(level + 1) % 2].bind_texture(glsl::kExactCellsUnit);
+                if (in_slices()) {
+                    // Only the parts of what was split; where nothing waits for the host, all that might be.
+                    std::uint32_t larger = 0;
+                    counters_.read(std::size_t(4) * (glsl::kExactCountCells + level - 1), &larger, sizeof(larger));
+                    p.extent = {std::min(4 * static_cast<int>(larger), 4096), divided_up(4 * static_cast<int>(larger), 4096)};
+                }
+            }
             band.levels[static_cast<std::size_t>(ask_first ? 0 : level + 1)].write_to(p);
             work.dispatches = split_.dispatch(p, p.extent);
             return work;
@@ -395,8 +408,9 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
             band.leaf.bind_image(glsl::kExactLeafImage, GL_READ_ONLY);
             results[moment]->bind_image(glsl::kExactRadianceImage, GL_WRITE_ONLY);
             glsl::ExactParams p = params;
-            p.extent = {plan.lit.size.x, end_lit - first_lit};
-            work.dispatches = fill_.of({{"kSigned", moment > 0 ? 1 : 0}}).dispatch(p, p.extent, settings.pixels);
+            p.fill_size = {plan.lit.size.x, end_lit - first_lit};
+            p.extent = (p.fill_first % 2 + p.fill_size + 1) / 2;  // blocks of two by two
+            work.dispatches = fill_.of({{"kSigned", moment > 0 ? 1 : 0}}).dispatch(p, p.extent, settings.pixels / 4);
             return work;
         };
         record("exact fill", {plan.lit.size.x, end_lit - first_lit}, [&] { return fill(0); });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <compare>
 #include <functional>
@@ -101,8 +102,9 @@ private:
     gl::ComputeProgram reflect_;
     gl::StorageBuffer coarse_heads_, coarse_entries_, coarse_lights_;
     gl::StorageBuffer heads_, entries_, lights_;
+    std::array<gl::StorageBuffer, 2> cells_;  // that were split, of this level and of the one before
     gl::StorageBuffer asks_, points_, jobs_, counters_, told_, means_;
-    std::size_t list_texels_[2] = {};  // that tiles' and larger tiles' lists took
+    std::array<std::size_t, 2> list_texels_{};  // that tiles' and larger tiles' lists took
     gl::StorageBuffer elements_, elements_before_, change_;
 };
 

@@ -17,6 +17,7 @@
 #include "core/plan/sky.h"
 #include "core/scene/words.h"
 #include "glsl/exact.h"
+#include "glsl/jump.h"
 #include "glsl/scene_records.h"
 #include "glsl/surface_records.h"
 
@@ -25,6 +26,13 @@ namespace {
 
 // More outline than this is refused by the method `exact`.
 constexpr std::size_t kMostPieces = 500'000;
+
+// How far `exact` asks: half the diagonal of its largest cell, on both sides of an outline (glsl/exact_split.comp). Solved points, lights and
+// the picture ask less: the sign, and how much of a pixel beside an outline it covers.
+constexpr double kExactReachPx = 6;
+static_assert(0.7072 * glsl::kExactCell + 0.01 < kExactReachPx);
+// A bitmap's pixel that is not found is farther than that: the distance is to its edge.
+static_assert(glsl::kNearSeeds + 1 - 0.5 > kExactReachPx);
 
 // The composed picture leaves the device in bands of this size.
 constexpr std::size_t kBandBytes = std::size_t(64) << 20;
@@ -155,6 +163,9 @@ void plan_split(Plan& plan, const Scene& scene, const LightSplit& split, const D
     if (split.solved.empty()) return;
     const Scene part = solved_part(scene, split.solved);
     PackedOutline outline = pack_outline(part, 1.0, false, kMostPieces);
+    if (!outline.fits)
+        throw DeviceError("The method 'hybrid' cannot take this scene: the outline about the lamps that it solves has more than " +
+                          std::to_string(kMostPieces) + " pieces.");
     outline.mean_intervals = split.cost / std::max(double(outline.pieces), 1.0);
     plan.exact = plan_exact(part, std::move(outline), plan.canvas, limits.software);
     if (split.all() && brightest(scene.sky) <= 0 && saves(scene.render, Saving::sampling)) plan.hrc = {};
@@ -273,8 +284,7 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         if (!outline.fits)
             throw DeviceError("The method 'exact' cannot take this scene: its outline has more than " +
                               std::to_string(kMostPieces) + " pieces.");
-    }
-    else if (plan.method == "hybrid") {
+    } else if (plan.method == "hybrid") {
         split = split_lights(scene, kMostPieces);
         if (split.solved.empty() && !pack_outline(scene, 1.0, false, kMostPieces).fits)
             throw DeviceError("The method 'hybrid' cannot take this scene: its outline has more than " +
@@ -319,13 +329,18 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         else
             plan.shape_slices.push_back({0, 0});
     }
-    plan.list_shapes = skip(Saving::lists) && scene.shapes.size() >= kFewestListedShapes;
+    if (exact && plan.look.at != LookAt::field && skip(Saving::reach)) plan.distance_reach_px = kExactReachPx;
+    const bool limited = plan.distance_reach_px < kUnlimitedReach;
+    plan.list_shapes = skip(Saving::lists) && scene.shapes.size() >= (limited ? 1 : kFewestListedShapes);
     const std::vector<int> jumps = plan_jumps(plan.grid.size);
     if (brute_force)
         leave_out("jump flooding", "rays meet bitmaps texel by texel", grid_pixels * double(jumps.size()));
     else if (!has_bitmaps && skip(Saving::flooding))
         leave_out("jump flooding", "the scene has no bitmaps", grid_pixels * double(jumps.size()));
-    else
+    else if (has_bitmaps && limited) {
+        plan.near_bitmaps = true;
+        leave_out("jump flooding", "no pixel asks for a bitmap that is farther than " + std::to_string(glsl::kNearSeeds) + " px", grid_pixels * double(jumps.size()));
+    } else
         plan.jump_steps = jumps;
 
     const CascadeSettings settings = plan.bilinear_fix ? rc_fix_settings(scene.render.quality) : cascade_settings(scene.render.quality);
@@ -409,14 +424,16 @@ Plan make_plan(const Scene& scene, const DeviceLimits& limits, const std::string
         // Of the bands that are solved, every tile's corner is: their mean is what tolerances are relative to.
         if (exact && plan.jump_steps.empty()) {
             const int band = plan.exact.band_rows;
-            plan.first_distance_row = plan.lit.first.y / band * band + plan.grid.border.y;
-            plan.end_distance_row = std::min((plan.lit.end().y + band - 1) / band * band + 1, plan.canvas.y) + plan.grid.border.y;
+            const int beside = plan.near_bitmaps ? glsl::kNearSeeds : 0;
+            plan.first_distance_row = std::max(plan.lit.first.y / band * band + plan.grid.border.y - beside, 0);
+            plan.end_distance_row = std::min(std::min((plan.lit.end().y + band - 1) / band * band + 1, plan.canvas.y) + plan.grid.border.y + beside, plan.grid.size.y);
         }
     }
     for (const CascadePlan& c : plan.cascades) check_size(c.texture, texel, limits, "cascade");
 
     plan.gpu_bytes = 8 * area(plan.grid.size) + row_bytes * static_cast<std::size_t>(plan.band_rows);
     if (!plan.jump_steps.empty()) plan.gpu_bytes += 8 * area(plan.grid.size);
+    if (plan.near_bitmaps) plan.gpu_bytes += 2 * area(plan.grid.size);
     if (!plan.cascades.empty()) plan.gpu_bytes += 2 * largest_area * texel;
     if (plan.reference.rays > 0) plan.gpu_bytes += 16 * area(plan.lit.size);
     if (plan.resolve) plan.gpu_bytes += area(plan.lit.size) * texel;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -67,8 +68,11 @@ constexpr std::size_t kIterationsPerSlice = 30000;
 // Loop iterations of the distance to a shape of this type (glsl/scene_records.h).
 std::size_t distance_iterations(int type, std::size_t edges);
 
-// Scenes of fewer shapes are not worth lists.
+// Scenes of fewer shapes are not worth lists, where all distances are asked for.
 constexpr std::size_t kFewestListedShapes = 2;
+
+// Distances are what they are, however far.
+constexpr double kUnlimitedReach = std::numeric_limits<double>::infinity();
 
 // Brute force: `rays` stratified rays a pixel, a few per dispatch, since Mesa before 25 ends loops.
 struct ReferencePlan {
@@ -110,7 +114,9 @@ struct Plan {
     std::optional<Colour> constant;     // mean radiance of every pixel: no pass runs but the picture's
     std::vector<ShapeSlice> shape_slices;
     bool list_shapes = false;           // per tile of the grid: each pixel asks its tile's shapes only
-    std::vector<int> jump_steps;        // of jump flooding, empty without bitmaps
+    double distance_reach_px = kUnlimitedReach;  // the field is true up to here, on both sides of an outline; beyond it says "no nearer than this"
+    std::vector<int> jump_steps;        // of jump flooding, empty without bitmaps and where they matter only nearby
+    bool near_bitmaps = false;          // their pixels are looked for around each pixel, kNearSeeds px far
     std::vector<CascadePlan> cascades;  // [0] is the nearest; empty when no light can arrive
     bool bilinear_fix = false;          // the cascades are those of `rc_fix`
     ReferencePlan reference;

@@ -119,7 +119,8 @@ Price price_of(const Scene& given, const DeviceLimits& limits) {
         const double rows = double(plan.end_distance_row - plan.first_distance_row);
         const double lit = area(plan.lit.size);
         if (!plan.shape_slices.empty()) add(Work::grid_pixels, double(plan.grid.size.x) * rows);
-        add(Work::flood_pixels, area(plan.grid.size) * double(plan.jump_steps.size()));
+        // A window's three passes over the tiles near bitmaps take what a jump takes.
+        add(Work::flood_pixels, area(plan.grid.size) * double(plan.jump_steps.size() + (plan.near_bitmaps ? 1 : 0)));
         for (const Shape& shape : scene.shapes) add(Work::shape_edges, double(edges_of(shape)));
         add(Work::pixels, lit);
         for (const CascadePlan& cascade : plan.cascades)

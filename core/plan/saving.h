@@ -21,6 +21,7 @@ enum class Saving : std::uint32_t {
     programs = 1u << 8,  // what programs do for kinds of shapes and curves that the scene has not
     closed = 1u << 9,    // pixels that outlines close off from all light (the method `exact`)
     sampling = 1u << 10, // light of other lamps than those solved, where there are none (the method `hybrid`)
+    reach = 1u << 11,    // distances farther than the method asks (the method `exact`)
     cells = 1u << 7,     // pixels between the corners of cells that tell all of them (the method `exact`)
 };
 
@@ -32,7 +33,7 @@ inline constexpr SavingName kSavings[] = {
     {Saving::constant, "constant picture"}, {Saving::shapes, "unseen shapes"},   {Saving::lists, "lists of near shapes"},
     {Saving::distance, "distance pass"},    {Saving::flooding, "jump flooding"}, {Saving::levels, "far cascades"},
     {Saving::programs, "programs for all kinds"}, {Saving::resolve, "resolve pass"},      {Saving::closed, "closed-off pixels"},
-    {Saving::sampling, "sampling"},         {Saving::cells, "cells"}};
+    {Saving::sampling, "sampling"},         {Saving::reach, "far distances"}, {Saving::cells, "cells"}};
 
 // Whether this render may leave that work out.
 inline bool saves(const RenderSettings& render, Saving saving) {

@@ -17,15 +17,13 @@ namespace {
 // Entries of all lists together: 64 MiB.
 constexpr std::size_t kMostEntries = std::size_t(1) << 24;
 
-// A list this short is kept by all tiles below: shorter ones save nothing.
-constexpr std::size_t kShortList = 1;
-
 // Halves squares of tiles down to single tiles, each judging only what its parent kept: a shape leaves the list when it is
-// surely farther than another, everywhere in the square, and covers none of it.
+// surely farther than another or than the reach, everywhere in the square, and covers none of it; or lies below one that covers all
+// of it deeper than the reach.
 class Lister {
 public:
-    Lister(const PackedScene& scene, const GridPlan& grid, int first_row, int end_row)
-        : scene_(scene), grid_(grid), first_row_(first_row), end_row_(end_row > 0 ? end_row : grid.size.y) {
+    Lister(const PackedScene& scene, const GridPlan& grid, int first_row, int end_row, double reach_px)
+        : scene_(scene), grid_(grid), first_row_(first_row), end_row_(end_row > 0 ? end_row : grid.size.y), reach_px_(reach_px) {
         constexpr int tile = glsl::kDistanceTile;
         lists_.tiles = (grid.size + tile - 1) / tile;
         lists_.ranges.resize(lists_.tile_count());
@@ -50,8 +48,9 @@ private:
     void visit(glm::ivec2 first, int side, const std::vector<int>& candidates) {
         if (first.x >= lists_.tiles.x || first.y >= lists_.tiles.y || lists_.shapes.size() > kMostEntries) return;
         if (first.y * glsl::kDistanceTile >= end_row_ || (first.y + side) * glsl::kDistanceTile <= first_row_) return;
-        const std::vector<int> kept = keep(first, side, candidates);
-        if (side > 1 && kept.size() > kShortList) {
+        bool settled = false;
+        const std::vector<int> kept = keep(first, side, candidates, settled);
+        if (side > 1 && !settled) {
             const int half = side / 2;
             for (const glm::ivec2 corner : {glm::ivec2(0, 0), glm::ivec2(half, 0), glm::ivec2(0, half), glm::ivec2(half, half)})
                 visit(first + corner, half, kept);
@@ -65,7 +64,8 @@ private:
             for (int x = first.x; x < end.x; ++x) lists_.ranges[std::size_t(y) * std::size_t(lists_.tiles.x) + std::size_t(x)] = range;
     }
 
-    std::vector<int> keep(glm::ivec2 first, int side, const std::vector<int>& candidates) {
+    // `settled`: the tiles below keep the same.
+    std::vector<int> keep(glm::ivec2 first, int side, const std::vector<int>& candidates, bool& settled) {
         constexpr int tile = glsl::kDistanceTile;
         const glm::ivec2 lo = first * tile;
         const glm::ivec2 hi = glm::min((first + side) * tile, grid_.size);
@@ -73,17 +73,26 @@ private:
         const glm::dvec2 across = glm::dvec2(hi - lo - 1);
         const double reach = 0.5 * std::hypot(across.x, across.y);
         // A pixel starts with the grid's diagonal as its distance.
-        double nearest = grid_.diagonal_px;
+        double nearest = std::min(grid_.diagonal_px, reach_px_);
+        std::size_t deep = 0;
         lows_.clear();
-        for (const int shape : candidates) {
-            const DistanceBounds d = distance_bounds(scene_, static_cast<std::size_t>(shape), middle, reach, std::max(nearest, 0.0));
+        highs_.clear();
+        for (std::size_t i = 0; i < candidates.size(); ++i) {
+            const DistanceBounds d = distance_bounds(scene_, static_cast<std::size_t>(candidates[i]), middle, reach, std::max(nearest, 0.0));
             nearest = std::min(nearest, d.high);
             lows_.push_back(d.low);
+            highs_.push_back(d.high);
+            if (d.high < -reach_px_) deep = i;
         }
         std::vector<int> kept;
+        double high = 0;
         // Not to be judged by what is inside: of shapes that cover a pixel, the last counts.
-        for (std::size_t i = 0; i < candidates.size(); ++i)
-            if (!(lows_[i] > std::max(nearest, 0.0))) kept.push_back(candidates[i]);
+        for (std::size_t i = deep; i < candidates.size(); ++i)
+            if (!(lows_[i] > std::max(nearest, 0.0))) {
+                kept.push_back(candidates[i]);
+                high = highs_[i];
+            }
+        settled = kept.empty() || (kept.size() == 1 && high <= reach_px_);
         return kept;
     }
 
@@ -120,27 +129,29 @@ private:
     const PackedScene& scene_;
     const GridPlan& grid_;
     int first_row_, end_row_;
-    std::vector<double> lows_;
+    double reach_px_;
+    std::vector<double> lows_, highs_;
     ShapeLists lists_;
 };
 
 }  // namespace
 
-ShapeLists list_shapes(const PackedScene& scene, const GridPlan& grid, int first_row, int end_row) {
-    Lister lister(scene, grid, first_row, end_row);
+ShapeLists list_shapes(const PackedScene& scene, const GridPlan& grid, int first_row, int end_row, double reach_px) {
+    Lister lister(scene, grid, first_row, end_row, reach_px);
     if (lister.run()) return lister.take();
     return {};
 }
 
-SkippedWork saved_by_lists(const ShapeLists& lists, const PackedScene& scene, const GridPlan& grid) {
+SkippedWork saved_by_lists(const ShapeLists& lists, const PackedScene& scene, const GridPlan& grid, double reach_px) {
     const double shapes = double(scene.opaque);
     const double pixels = double(grid.size.x) * grid.size.y;
     constexpr int side = glsl::kDistanceTile;
     const std::string square = std::to_string(side) + " x " + std::to_string(side);
-    char mean[32];
+    char mean[32], reach[32] = "";
     std::snprintf(mean, sizeof mean, "%.1f", lists.mean_length);
+    if (std::isfinite(reach_px)) std::snprintf(reach, sizeof reach, " and within %g px", reach_px);
     return {"distances to far shapes",
-            std::string("a tile of ") + square + " pixels asks the shapes that can be nearest in it, " + mean + " on average",
+            std::string("a tile of ") + square + " pixels asks the shapes that can be nearest in it" + reach + ", " + mean + " on average",
             pixels * (shapes - lists.mean_length)};
 }
 

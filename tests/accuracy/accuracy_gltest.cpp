@@ -133,7 +133,7 @@ TEST_F(BrokenShader, RaysThatEndElsewhereAreCaught) {
 }
 
 TEST_F(BrokenShader, SlopesTakenTwiceAreCaught) {
-    expect_caught("exact", "exact_fill.comp", "+ 0.5 * (imageLoad(slope_x_image", "+ 1.0 * (imageLoad(slope_x_image");
+    expect_caught("exact", "exact_fill.comp", "+ 0.5 * (slopes_x", "+ 1.0 * (slopes_x");
 }
 
 TEST_F(BrokenShader, ShadowsThatNoCellIsSplitAtAreCaught) {

@@ -42,7 +42,7 @@ void plan(const Scene& scene) {
         for (int i = 0; i < 4; ++i) check(std::isfinite(texel[i]), "packed edges are finite");
     }
     if (!plan.list_shapes) return;
-    const ShapeLists lists = list_shapes(packed, plan.grid);
+    const ShapeLists lists = list_shapes(packed, plan);
     for (const glm::ivec2 range : lists.ranges) {
         check(0 <= range.x && range.x <= range.y && std::size_t(range.y) <= lists.shapes.size(), "a list lies within the lists");
     }

@@ -46,7 +46,7 @@ Frame run_frame(const Scene& scene, const Plan& plan, const PassSettings& settin
     ResolvePass resolve(shader_dir());
     DistanceField field;
     if (plan.shape_slices.empty()) field = DistancePass::empty_field(plan);
-    else distance.run(plan, {}, settings, field);
+    else distance.run(plan, pack_scene(scene, 1), {}, settings, field);
     Frame frame;
     frame.cascades.resize(plan.cascades.size());
     gl::Texture2D above;

@@ -104,6 +104,46 @@ TEST(JumpFlood, APictureOnTopAndBelow) {
     }
 }
 
+// A window finds what is near, exactly, and touches nothing else.
+TEST(NearBitmaps, AsByBruteForce) {
+    for (const auto& [width, height] : {std::pair(37, 29), std::pair(64, 64), std::pair(1, 41), std::pair(53, 7), std::pair(101, 83)})
+        for (const double density : {0.002, 0.02, 0.3})
+            for (const double margin : {0.0, 9.5}) {
+                const std::string what = std::to_string(width) + "x" + std::to_string(height) + " at " + std::to_string(density);
+                Numbers numbers(static_cast<std::uint64_t>(width * 1000 + height));
+                Scene scene = bitmap_scene(width, height, picture(width, height, [&](int, int) { return numbers.next() < density; }));
+                scene.canvas.margin = margin;
+                scene.shapes.push_back(shape(Circle{{0.4 * width, 0.6 * height}, 3.2}));
+                Plan plan = pass_plan(scene);
+                plan.jump_steps.clear();
+                const Field without = run_distance(scene, plan);
+                plan.near_bitmaps = true;
+                const Field field = run_distance(scene, plan);
+                const auto is_seed = [&](int x, int y) { return without.distance[without.index(x, y)] <= 0 && without.material[without.index(x, y)] == 0; };
+                for (int y = 0; y < field.size.y; ++y)
+                    for (int x = 0; x < field.size.x; ++x) {
+                        float expected = without.distance[without.index(x, y)];
+                        for (int sy = std::max(y - glsl::kNearSeeds, 0); sy <= std::min(y + glsl::kNearSeeds, field.size.y - 1); ++sy)
+                            for (int sx = std::max(x - glsl::kNearSeeds, 0); sx <= std::min(x + glsl::kNearSeeds, field.size.x - 1); ++sx)
+                                if (is_seed(sx, sy)) expected = std::min(expected, std::sqrt(float((sx - x) * (sx - x) + (sy - y) * (sy - y))) - 0.5f);
+                        ASSERT_NEAR(field.distance[field.index(x, y)], expected, 1e-6) << what << ": " << x << ", " << y;
+                    }
+                EXPECT_EQ(field.material, without.material) << what;
+            }
+}
+
+TEST(NearBitmaps, OutsideTheGridThereIsNothing) {
+    Scene scene = canvas(40, 30);
+    const auto image = picture(2, 2, [](int, int) { return true; });
+    for (const Point at : {Point(-300, 4), Point(70, 4), Point(4, -50), Point(4, 90), Point(-1e9, -1e9), Point(1e9, 1e9)})
+        scene.shapes.push_back(shape(Bitmap{image, at, {9, 9}}));
+    Plan plan = pass_plan(scene);
+    plan.jump_steps.clear();
+    plan.near_bitmaps = true;
+    const Field field = run_distance(scene, plan);
+    for (const float d : field.distance) EXPECT_EQ(d, static_cast<float>(plan.grid.diagonal_px));
+}
+
 TEST(JumpFlood, WritesNothingOutsideItsExtent) {
     shared_context();
     const glm::ivec2 size(48, 40);

@@ -78,7 +78,7 @@ Offsets exact_fields() {
             FIELD(ExactParams, first_ask), FIELD(ExactParams, pad1), FIELD(ExactParams, root_counts),
             FIELD(ExactParams, root_lights), FIELD(ExactParams, wide), FIELD(ExactParams, jobs),
             FIELD(ExactParams, list_origin), FIELD(ExactParams, window),
-            FIELD(ExactParams, fill_first), FIELD(ExactParams, fill_row), FIELD(ExactParams, pad7), FIELD(ExactParams, most)};
+            FIELD(ExactParams, fill_first), FIELD(ExactParams, fill_row), FIELD(ExactParams, pad7), FIELD(ExactParams, fill_size), FIELD(ExactParams, pad8), FIELD(ExactParams, most)};
 }
 
 Offsets delta_fields() {
@@ -105,11 +105,14 @@ std::vector<Layout> layouts() {
         {"distance.comp", sizeof(glsl::DistanceParams),
          {FIELD(DistanceParams, origin), FIELD(DistanceParams, extent), FIELD(DistanceParams, border),
           FIELD(DistanceParams, first_shape), FIELD(DistanceParams, end_shape), FIELD(DistanceParams, continues),
-          FIELD(DistanceParams, far_px), FIELD(DistanceParams, tiles), FIELD(DistanceParams, first_range)},
+          FIELD(DistanceParams, far_px), FIELD(DistanceParams, jobs), FIELD(DistanceParams, pad0)},
          glsl::kDistanceGroupX, glsl::kDistanceGroupY},
         {"jump_seed.comp", sizeof(glsl::JumpParams), jump_fields(), glsl::kJumpGroupX, glsl::kJumpGroupY},
         {"jump_flood.comp", sizeof(glsl::JumpParams), jump_fields(), glsl::kJumpGroupX, glsl::kJumpGroupY},
         {"jump_merge.comp", sizeof(glsl::JumpParams), jump_fields(), glsl::kJumpGroupX, glsl::kJumpGroupY},
+        {"near_seeds.comp", sizeof(glsl::JumpParams), jump_fields(), glsl::kJumpGroupX, glsl::kJumpGroupY},
+        {"near_columns.comp", sizeof(glsl::JumpParams), jump_fields(), glsl::kJumpGroupX, glsl::kJumpGroupY},
+        {"near_merge.comp", sizeof(glsl::JumpParams), jump_fields(), glsl::kJumpGroupX, glsl::kJumpGroupY},
         {"cascade.comp", sizeof(glsl::CascadeParams),
          {FIELD(CascadeParams, origin), FIELD(CascadeParams, extent), FIELD(CascadeParams, probes),
           FIELD(CascadeParams, upper_probes), FIELD(CascadeParams, border), FIELD(CascadeParams, tiles),

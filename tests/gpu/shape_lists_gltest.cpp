@@ -112,5 +112,50 @@ TEST(ShapeLists, NorInSlicesAndBands) {
     expect_same_with_lists(any_scene(1, 150, 117, 100, 6), "bands", PassSettings{150 * 8, 0, 0, nullptr});
 }
 
+// Up to the reach the same field, beyond it no nearer.
+void expect_same_within_reach(const Scene& scene, const std::string& what) {
+    constexpr float reach = 6;
+    Plan plan = pass_plan(scene);
+    plan.list_shapes = false;
+    plan.jump_steps.clear();  // a window finds exactly what flooding may miss: its own test
+    const Field all = run_distance(scene, plan);
+    plan.list_shapes = true;
+    plan.distance_reach_px = reach;
+    const Field near = run_distance(scene, plan);
+    std::size_t far = 0;
+    for (std::size_t i = 0; i < all.distance.size(); ++i) {
+        const float d = all.distance[i];
+        if (std::abs(d) < reach) {
+            ASSERT_EQ(near.distance[i], d) << what << ", pixel " << i;
+        } else if (d > 0) {
+            ASSERT_GE(near.distance[i], std::min(reach, float(plan.grid.diagonal_px))) << what << ", pixel " << i;
+            ++far;
+        } else {
+            ASSERT_LE(near.distance[i], -reach) << what << ", pixel " << i;
+        }
+        if (d < reach) {
+            ASSERT_EQ(near.material[i], all.material[i]) << what << ", pixel " << i;
+        }
+    }
+    if (far == all.distance.size()) {
+        EXPECT_EQ(near.material, std::vector<int>(near.material.size(), -1)) << what;
+    }
+}
+
+TEST(ShapeLists, WithinAReachTheFieldIsTheSame) {
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+        const std::string what = "scene " + std::to_string(seed);
+        expect_same_within_reach(any_scene(seed, 150, 117, 60, 6), "small shapes, " + what);
+        expect_same_within_reach(any_scene(100 + seed, 150, 117, 10, 25), "large shapes, " + what);
+        expect_same_within_reach(any_scene(300 + seed, 70, 70, 30, 400), "shapes larger than the view, " + what);
+        expect_same_within_reach(any_scene(400 + seed, 201, 133, 1 + int(seed) % 5, 8), "few shapes, " + what);
+        Scene margin = any_scene(500 + seed, 120, 90, 20, 6);
+        margin.canvas.margin = 30.4;
+        expect_same_within_reach(margin, "margin, " + what);
+    }
+    expect_same_within_reach(with(canvas(64, 64), {shape(Circle{{900, 20}, 5})}), "nothing near");
+    expect_same_within_reach(with(canvas(3, 2), {shape(Circle{{9, 1}, 5})}), "a canvas smaller than the reach");
+}
+
 }  // namespace
 }  // namespace penumbra::test

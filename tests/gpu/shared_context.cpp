@@ -15,6 +15,7 @@ struct Shared {
     gl::Context context{test_options().device};
     DistancePass distance{shader_dir()};
     JumpFloodPass jump_flood{shader_dir()};
+    NearBitmapsPass near_bitmaps{shader_dir()};
 };
 std::unique_ptr<Shared> shared;
 
@@ -56,13 +57,14 @@ Field run_distance(const Scene& scene, const Plan& plan, const PassSettings& set
     const SceneBuffers buffers(packed, scene.sky, plan);
     buffers.bind();
     DistanceField field;
-    s.distance.run(plan, plan.list_shapes ? list_shapes(packed, plan.grid) : ShapeLists(), settings, field);
+    s.distance.run(plan, packed, plan.list_shapes ? list_shapes(packed, plan) : ShapeLists(), settings, field);
     if (!plan.jump_steps.empty()) s.jump_flood.run(plan, settings, field);
+    if (plan.near_bitmaps) s.near_bitmaps.run(plan, packed, settings, field);
     return read_field(field);
 }
 
 Plan pass_plan(Scene scene) {
-    scene.render.keep = static_cast<std::uint32_t>(Saving::constant);
+    scene.render.keep = static_cast<std::uint32_t>(Saving::constant) | static_cast<std::uint32_t>(Saving::reach);
     return make_plan(scene, {});
 }
 

@@ -10,6 +10,7 @@
 #include "core/passes/distance_pass.h"
 #include "core/passes/frame.h"
 #include "core/passes/jump_flood_pass.h"
+#include "core/passes/near_bitmaps_pass.h"
 #include "core/passes/scene_buffers.h"
 #include "core/plan/plan.h"
 #include "core/plan/shape_lists.h"
@@ -32,7 +33,7 @@ struct Field {
 Field read_field(const DistanceField& field);
 
 // Distance pass (with lists of near shapes, and with jump flooding, where the plan has them) of a scene.
-// A plan whose passes run even where the picture is constant.
+// A plan whose passes run even where the picture is constant, and whose distances are told however far.
 Plan pass_plan(Scene scene);
 
 Field run_distance(const Scene& scene, const Plan& plan, const PassSettings& settings = kOneSlice);

@@ -285,6 +285,42 @@ TEST(MakePlan, SaysWhatItSkipsAndWhy) {
     EXPECT_EQ(skipped(fine, "resolve"), "");
 }
 
+TEST(MakePlan, ExactAsksForDistancesNearOutlinesOnly) {
+    auto image = std::make_shared<Texels>();
+    image->width = image->height = 1;
+    image->rgba = {255, 255, 255, 255};
+    Scene scene = scene_of(64, 48);
+    scene.shapes.push_back(shape_of(Bitmap{image, {1, 1}, {4, 4}, 1, 0.5, false}));
+    for (const char* method : {"exact", "rc", "rc_fix", "hrc", "hybrid"}) {
+        scene.render.method = method;
+        const bool exact = std::string(method) == "exact";
+        const Plan plan = make_plan(scene, {});
+        EXPECT_EQ(plan.distance_reach_px < kUnlimitedReach, exact) << method;
+        EXPECT_EQ(plan.near_bitmaps, exact) << method;
+        EXPECT_EQ(plan.jump_steps.empty(), exact) << method;
+        EXPECT_EQ(plan.list_shapes, exact) << method << ": one shape";
+    }
+    // A view of the field, and a comparison, want all of it.
+    scene.render.method = "exact";
+    for (const char* view : {"distance", "normals", "tiles"}) {
+        scene.render.view = view;
+        EXPECT_EQ(make_plan(scene, {}).distance_reach_px, kUnlimitedReach) << view;
+        EXPECT_FALSE(make_plan(scene, {}).near_bitmaps) << view;
+    }
+    scene.render.view = "final";
+    scene.render.keep = static_cast<std::uint32_t>(Saving::reach);
+    EXPECT_EQ(make_plan(scene, {}).jump_steps, plan_jumps({64, 48}));
+    scene.render.keep = 0;
+    // A part of the canvas asks the rows beside it as well, for bitmaps.
+    scene = scene_of(64, 4000);
+    scene.render.method = "exact";
+    scene.shapes.push_back(shape_of(Bitmap{image, {1, 1}, {4, 4}, 1, 0.5, false}));
+    scene.canvas.region = PixelRect{0, 3900, 10, 10};
+    const Plan part = make_plan(scene, {});
+    EXPECT_LE(part.first_distance_row, 3893);
+    EXPECT_EQ(part.end_distance_row, 4000);
+}
+
 TEST(MakePlan, ABitmapIsFloodedAndItsLightCounts) {
     auto image = std::make_shared<Texels>();
     image->width = image->height = 1;

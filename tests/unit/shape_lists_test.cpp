@@ -23,7 +23,9 @@ std::vector<int> list_at(const ShapeLists& lists, int x, int y, int slice = 0) {
     return {lists.shapes.begin() + range.x, lists.shapes.begin() + range.y};
 }
 
-ShapeLists lists_of(const Scene& scene) { return list_shapes(pack_scene(scene, 1), plan_grid(scene.canvas)); }
+ShapeLists lists_of(const Scene& scene, double reach_px = kUnlimitedReach) {
+    return list_shapes(pack_scene(scene, 1), plan_grid(scene.canvas), 0, 0, reach_px);
+}
 
 TEST(ShapeLists, KeepWhatIsNearAndWhatCovers) {
     const ShapeLists lists = lists_of(with(canvas(256, 64), {shape(Rect{{32, 32}, {60, 60}, 0, 0}), shape(Circle{{32, 32}, 5}),
@@ -45,6 +47,31 @@ TEST(ShapeLists, BitmapsWhereTheyAre) {
 TEST(ShapeLists, NothingNearIsNothingAsked) {
     // Beyond the diagonal no shape is nearer than none.
     EXPECT_EQ(list_at(lists_of(with(canvas(32, 32), {shape(Circle{{900, 20}, 5}), shape(Circle{{-900, 20}, 5})})), 0, 0), std::vector<int>());
+}
+
+TEST(ShapeLists, NothingBeyondTheReachIsAsked) {
+    const Scene scene = with(canvas(256, 256), {shape(Circle{{100, 100}, 40}), shape(Rect{{212, 20}, {8, 8}, 0, 0})});
+    const ShapeLists lists = lists_of(scene, 6);
+    EXPECT_EQ(list_at(lists, 100, 20), std::vector<int>());    // 40 px off
+    EXPECT_EQ(list_at(lists, 100, 50), (std::vector<int>{0}));  // 10 px off at the pixel, 4 px in its tile
+    EXPECT_EQ(list_at(lists, 100, 100), (std::vector<int>{0}));
+    EXPECT_EQ(list_at(lists, 212, 20), (std::vector<int>{1}));
+    EXPECT_EQ(list_at(lists, 250, 250), std::vector<int>());
+    EXPECT_LT(lists.mean_length, 0.2);
+    EXPECT_GT(lists_of(scene).mean_length, 1);
+    const SkippedWork saved = saved_by_lists(lists, pack_scene(scene, 1), plan_grid(scene.canvas), 6);
+    EXPECT_NE(saved.why.find("within 6 px"), std::string::npos) << saved.why;
+    EXPECT_EQ(list_at(lists_of(with(canvas(64, 64), {shape(Circle{{32, 32}, 5})}), 6), 32, 32), (std::vector<int>{0})) << "one shape alone";
+}
+
+TEST(ShapeLists, WhatLiesDeepUnderAnotherIsNotAskedWithinAReach) {
+    const Shape wide = shape(Circle{{64, 64}, 60}), small = shape(Circle{{64, 64}, 10});
+    EXPECT_EQ(list_at(lists_of(with(canvas(128, 128), {small, wide}), 6), 64, 64), (std::vector<int>{1}));
+    EXPECT_EQ(list_at(lists_of(with(canvas(128, 128), {small, wide})), 64, 64), (std::vector<int>{0, 1}));
+    // On top it shows.
+    EXPECT_EQ(list_at(lists_of(with(canvas(128, 128), {wide, small}), 6), 68, 68), (std::vector<int>{0, 1}));
+    // Near the edge of what covers, what is below counts.
+    EXPECT_EQ(list_at(lists_of(with(canvas(128, 128), {shape(Circle{{116, 64}, 8}), wide}), 6), 121, 64), (std::vector<int>{0, 1}));
 }
 
 TEST(ShapeLists, LongListsAreSliced) {
