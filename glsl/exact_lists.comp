@@ -14,7 +14,7 @@ layout(binding = kExactSectorsUnit) uniform samplerBuffer sectors;
 layout(std430, binding = kExactHeadsStorage) writeonly buffer Heads { uvec4 out_heads[]; };
 layout(std430, binding = kExactEntriesStorage) writeonly buffer Entries { vec4 out_entries[]; };
 layout(std430, binding = kExactLightsStorage) writeonly buffer Lights { vec4 out_lights[]; };
-layout(std430, binding = kExactToldStorage) buffer Told { uint told[]; };
+layout(std430, binding = kExactToldStorage) buffer ToldCounters { uint told[]; };
 
 const int kArcs = 1;      // the parent's lists hold arcs
 const int kEllipses = 1;  // and ellipses

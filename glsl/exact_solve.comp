@@ -23,8 +23,8 @@ layout(binding = kExactNodesUnit) uniform samplerBuffer nodes;
 layout(binding = kExactValueImage, rgba32f) uniform image2D value_image;
 layout(binding = kExactSlopeXImage, rgba32f) uniform image2D slope_x_image;
 layout(binding = kExactSlopeYImage, rgba32f) uniform image2D slope_y_image;
-layout(std430, binding = kExactCountersStorage) readonly buffer Counters { uint counters[]; };
-layout(std430, binding = kExactToldStorage) buffer Told { uint told[]; };
+layout(std430, binding = kExactCountersStorage) buffer Counters { uint counters[]; };
+layout(std430, binding = kExactToldStorage) buffer ToldCounters { uint told[]; };
 
 // Which program this is: Mesa 22 runs both sides of every branch and every loop once, so a scene gets no more than it needs.
 const int kArcs = 1;      // lists hold arcs
