@@ -96,7 +96,7 @@ struct Renderer::Impl {
         exact.share_sectors(options.solver_lanes > 0 ? options.solver_lanes : long_loops ? kSolverLanesOfGpu : 1);
         // About 10 ms a dispatch on two cores of llvmpipe; a GPU takes a hundred times that.
         const std::size_t factor = gl_info.software ? 1 : 128;
-        settings = {factor * 6'000'000, factor * 300'000, factor * 1'000'000, &textures};
+        settings = {factor * 6'000'000, factor * 300'000, factor * 1'000'000, &textures, !gl_info.software};
     }
 
     RenderResult render(const Scene& scene, const std::string& not_exact = {});

@@ -42,7 +42,7 @@ const int kExactValueImage = 0;   // rgb mean radiance, a: signature of what is 
 const int kExactSlopeXImage = 1;  // rgb its slope along x per pixel, a: bound on its third derivatives
 const int kExactSlopeYImage = 2;  // rgb its slope along y, a: sectors that are done
 const int kExactRadianceImage = 5;
-const int kExactLeafImage = 4;    // R32UI: at a cell's first pixel: size of the smallest cell there
+const int kExactLeafImage = 4;    // R32UI: at the first pixel of each cell that was looked at: size of the smallest cell there
 
 // Storage.
 const int kExactHeadsStorage = 0;

@@ -48,6 +48,7 @@ void main() {
         return;
     }
     if (any(lessThan(cell, window.xy)) || any(greaterThanEqual(cell, window.zw))) return;
+    if (h == kExactCell) imageStore(leaf_image, corner, uvec4(h));
     ivec2 pixel = corner + ivec2(0, params.first_row);
     if (pixel.x >= params.canvas.x || pixel.y >= params.canvas.y) return;
 
@@ -107,7 +108,11 @@ void main() {
 
     int half_cell = h / 2;
     split_cells[atomicAdd(counters[kExactCountCells + params.level], 1u)] = uint(cell.x) | uint(cell.y) << 16;
+    // Each of its parts is whole until it is split in its turn.
     imageStore(leaf_image, corner, uvec4(half_cell));
+    imageStore(leaf_image, corner + ivec2(half_cell, 0), uvec4(half_cell));
+    imageStore(leaf_image, corner + ivec2(0, half_cell), uvec4(half_cell));
+    imageStore(leaf_image, corner + ivec2(half_cell), uvec4(half_cell));
     ask(corner + ivec2(half_cell, 0));
     ask(corner + ivec2(0, half_cell));
     ask(corner + ivec2(half_cell));

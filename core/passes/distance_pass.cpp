@@ -26,7 +26,8 @@ bool is_plain(const PackedScene& scene, int shape) {
     return type == glsl::kShapeCircle || type == glsl::kShapeRect || type == glsl::kShapeLine;
 }
 
-TileJobs jobs_of(const Plan& plan, const PackedScene& scene, const ShapeLists& lists, int slice, bool apart) {
+// `with_empty`: tiles without shapes are jobs as well, which say so pixel by pixel.
+TileJobs jobs_of(const Plan& plan, const PackedScene& scene, const ShapeLists& lists, int slice, bool apart, bool with_empty) {
     TileJobs jobs;
     constexpr int side = glsl::kDistanceTile;
     const int end_row = std::min((plan.end_distance_row + side - 1) / side, lists.tiles.y);
@@ -34,12 +35,12 @@ TileJobs jobs_of(const Plan& plan, const PackedScene& scene, const ShapeLists& l
         for (int x = 0; x < lists.tiles.x; ++x) {
             const std::size_t tile = static_cast<std::size_t>(y) * static_cast<std::size_t>(lists.tiles.x) + static_cast<std::size_t>(x);
             const glm::ivec2 range = lists.ranges[static_cast<std::size_t>(slice) * lists.tile_count() + tile];
-            if (range.x == range.y) {
+            if (range.x == range.y && !with_empty) {
                 jobs.complete = false;
                 continue;
             }
             const auto first = lists.shapes.begin() + range.x, end = lists.shapes.begin() + range.y;
-            const bool plain = apart && std::all_of(first, end, [&](int shape) { return is_plain(scene, shape); });
+            const bool plain = range.x < range.y && apart && std::all_of(first, end, [&](int shape) { return is_plain(scene, shape); });
             (plain ? jobs.plain : jobs.general).emplace_back(x * side, y * side, range.x, range.y);
         }
     return jobs;
@@ -82,7 +83,7 @@ PassWork DistancePass::run(const Plan& plan, const PackedScene& scene, const Sha
     constants.emplace_back("kDistanceByTiles", 1);
     const bool apart = !plan.needs.general && (plan.needs.ellipses || plan.needs.outlines || plan.needs.bitmaps);
     for (int slice = 0; slice < lists.slices; ++slice) {
-        const TileJobs jobs = jobs_of(plan, scene, lists, slice, apart);
+        const TileJobs jobs = jobs_of(plan, scene, lists, slice, apart, slice == 0 && settings.slow_clears);
         if (slice == 0 && !jobs.complete) {
             out.distance.clear(params.far_px);
             out.material.clear(-1);

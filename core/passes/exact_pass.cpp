@@ -346,7 +346,6 @@ void ExactPass::run(const Plan& plan, const Sky& sky, const DistanceField& field
         band.slope_x = settings.take(GL_RGBA32F, grid);
         band.slope_y = settings.take(GL_RGBA32F, grid);
         band.leaf = settings.take(GL_R32UI, params.tiles * glsl::kExactTile);
-        band.leaf.clear(glsl::kExactCell);
 
         const auto split = [&](int level, bool ask_first) {
             PassWork work;

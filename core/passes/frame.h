@@ -25,6 +25,7 @@ struct PassSettings {
     std::size_t rays = 0;
     std::size_t pixels = 0;
     gl::TexturePool* textures = nullptr;  // none: made anew each time
+    bool slow_clears = false;             // to clear a texture takes longer than to write all of it: a GPU that hardly draws
 
     gl::Texture2D take(GLenum format, glm::ivec2 size, gl::Filter filter = gl::Filter::nearest) const {
         return textures != nullptr ? textures->take(format, size, filter) : gl::Texture2D(format, size, filter);

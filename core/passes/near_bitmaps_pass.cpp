@@ -13,12 +13,12 @@
 namespace penumbra {
 namespace {
 
-// First pixels of the tiles that a bitmap's box comes within the window of.
-std::vector<glm::ivec2> tiles_near_bitmaps(const Plan& plan, const PackedScene& scene) {
+// First pixels of the tiles that a bitmap's box comes within the window of, or of all tiles.
+std::vector<glm::ivec2> tiles_near_bitmaps(const Plan& plan, const PackedScene& scene, bool all) {
     constexpr int side = glsl::kNearTile;
     constexpr double beside = glsl::kNearSeeds + 1;  // a pixel for rounding
     const glm::ivec2 count = (plan.grid.size + side - 1) / side;
-    std::vector<char> asked(static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y), 0);
+    std::vector<char> asked(static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y), all ? 1 : 0);
     for (std::size_t i = 0; i < scene.opaque; ++i) {
         const glm::vec4* record = &scene.shapes[i * glsl::kShapeTexels];
         if (static_cast<int>(record[0].x) != glsl::kShapeBitmap) continue;
@@ -31,7 +31,7 @@ std::vector<glm::ivec2> tiles_near_bitmaps(const Plan& plan, const PackedScene& 
     }
     std::vector<glm::ivec2> tiles;
     for (int y = 0; y < count.y; ++y) {
-        if ((y + 1) * side <= plan.first_distance_row || y * side >= plan.end_distance_row) continue;
+        if (!all && ((y + 1) * side <= plan.first_distance_row || y * side >= plan.end_distance_row)) continue;
         for (int x = 0; x < count.x; ++x)
             if (asked[static_cast<std::size_t>(y) * static_cast<std::size_t>(count.x) + static_cast<std::size_t>(x)] != 0) tiles.emplace_back(x * side, y * side);
     }
@@ -47,14 +47,16 @@ NearBitmapsPass::NearBitmapsPass(const std::string& shader_dir)
 
 PassWork NearBitmapsPass::run(const Plan& plan, const PackedScene& scene, const PassSettings& settings, DistanceField& field) {
     PassWork work;
-    const std::vector<glm::ivec2> first = tiles_near_bitmaps(plan, scene);
+    const std::vector<glm::ivec2> first = tiles_near_bitmaps(plan, scene, settings.slow_clears);
     if (first.empty()) return work;
     const gl::BufferTexture tiles(GL_RG32I, first.data(), first.size() * sizeof(glm::ivec2));
     gl::Texture2D seeds = settings.take(GL_R8UI, plan.grid.size);
     gl::Texture2D columns = settings.take(GL_R8UI, plan.grid.size);
-    // Beside the tiles there are none.
-    seeds.clear(GLuint(0));
-    columns.clear(GLuint(0));
+    if (!settings.slow_clears) {
+        // Beside the tiles there are none.
+        seeds.clear(GLuint(0));
+        columns.clear(GLuint(0));
+    }
     glsl::JumpParams params{};
     params.extent = plan.grid.size;
     params.step = static_cast<int>(first.size());

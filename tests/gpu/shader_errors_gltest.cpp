@@ -117,7 +117,7 @@ TEST(ShaderErrors, TheRendererPassesThemOn) {
 
 TEST(ShaderErrors, TheRendererReadsALiveFolder) {
     const ShaderCopy copy;
-    copy.replace_line("linear.comp", "imageStore", "    imageStore(linear_image, pixel, vec4(0.125, 0.25, 0.5, solid_radiance(pixel).r));");
+    copy.replace_line("linear.comp", "imageStore", "    imageStore(linear_image, texel, vec4(0.125, 0.25, 0.5, solid_radiance(pixel, solid).r));");
     RendererOptions options = test_options();
     options.shader_dir = copy.folder();
     Renderer renderer(options);
