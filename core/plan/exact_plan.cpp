@@ -40,7 +40,8 @@ ExactPlan plan_exact(const Scene& scene, PackedOutline outline, glm::ivec2 canva
     plan.first_axis = 0.0927;
     plan.coarse_tile = pieces > 48 ? 4 * glsl::kExactTile : 0;
     plan.sky_nodes = scene.sky.gradient.empty() ? 0 : 2048;
-    const int most_pixels = software ? 1 << 21 : 1 << 23;
+    // Lists of a crowded scene are long, and those of a band must fit into 128 MiB.
+    const int most_pixels = (software ? 1 << 21 : 1 << 23) / (pieces > 400 ? 4 : 1);
     const int rows = std::max(most_pixels / std::max(canvas.x, 1), 1);
     const int unit = plan.coarse_tile > 0 ? plan.coarse_tile : glsl::kExactTile;
     plan.band_rows = std::max(rows / unit, 1) * unit;
