@@ -359,6 +359,8 @@ void solve(int tile_index, bools solid) {
                 top_far = near_far;
                 now = next;
             }
+            // A walk that takes more than a whole budget is cut off, and the host told.
+            spent = spent || (budget <= 0 && any_of(lt(now, limit)));
             gather(bools(true), max(now, from), sector.z);
             if (kSky == 0 && kSlopes != 0) {
                 bools counts = both(lt(limit, reals(params.tan_half)), ne(top, reals(kUnknown)));
@@ -366,16 +368,10 @@ void solve(int tile_index, bools solid) {
                 signature += pick(uints(0u), mixed(pair), counts);
             }
         }
-        if (kExactLanes > 1) spent = spent || budget <= 0;
     }
-    if (kExactLanes > 1) {
-        if (spent) atomicAdd(told[kExactToldSpent], 1u);
-        s = params.sectors;
-    } else {
-        // A list that takes more than a whole budget is cut off.
-        if (s < params.sectors) atomicAdd(told[kExactToldUnfinished], 1u);
-        if (s >= params.sectors && budget <= 0) atomicAdd(told[kExactToldSpent], 1u);
-    }
+    if (spent) atomicAdd(told[kExactToldSpent], 1u);
+    if (kExactLanes > 1) s = params.sectors;
+    else if (s < params.sectors) atomicAdd(told[kExactToldUnfinished], 1u);
     store(s);
 }
 

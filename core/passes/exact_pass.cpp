@@ -256,6 +256,7 @@ void ExactPass::run_solver(glsl::ExactParams params, Band& band, PassWork& work,
         ++done;
         if (band.most_dispatches == 1 || (long_loops_ && done == band.most_dispatches)) break;
         if (long_loops_) continue;
+        check_spent("points");
         std::uint32_t unfinished = 0;
         told_.read(4 * glsl::kExactToldUnfinished, &unfinished, sizeof(unfinished));
         if (unfinished == 0) break;

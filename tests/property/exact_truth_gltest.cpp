@@ -252,6 +252,19 @@ TEST(ExactMany, ListsTooLongToCountAreRefusedNotWrong) {
     }
 }
 
+// A crowd in one sector of direction, whose walk takes more than a dispatch's iterations, and more sectors after it.
+TEST(ExactMany, ASectorThatIsCutOffIsRefusedNotWrong) {
+    Scene scene = canvas(16, 16);
+    scene.canvas.margin = 320;
+    scene.sky.radiance = Colour(0.1);
+    for (int i = 0; i < 400; ++i) scene.shapes.push_back(shape(Circle{{-290 - 0.3 * (i % 5), -1 + 0.045 * i}, 0.03}, Colour(i % 2 == 0 ? 3.0 : 0.0)));
+    try {
+        EXPECT_LE(strided_error(scene), 1e-3);
+    } catch (const DeviceError& error) {
+        EXPECT_NE(std::string(error.what()).find("too dense"), std::string::npos) << error.what();
+    }
+}
+
 // Between two walls, few points see many small discs far away: the survey does not notice.
 TEST(ExactMany, AutoTakesAnotherMethodWhereASceneIsTooDense) {
     Scene scene = canvas(512, 512);
