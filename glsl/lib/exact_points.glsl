@@ -100,7 +100,6 @@ void store(int done) {
 
 #else
 
-const int kLanesFirst = 0;  // neighbouring threads are lanes of one point; 0: the same lane of neighbouring points
 const int kGroupPoints = kExactSolveThreads / kExactLanes;
 
 shared uvec4 parts[kExactSolveThreads];
@@ -108,15 +107,10 @@ shared uvec4 parts[kExactSolveThreads];
 ivec2 place;         // in the images
 bool there = false;  // is this point
 
-int lane() {
-    int i = int(gl_LocalInvocationIndex);
-    return kLanesFirst != 0 ? i % kExactLanes : i / kGroupPoints;
-}
+// Neighbouring threads are the same lane of neighbouring points: they ask the same pieces.
+int lane() { return int(gl_LocalInvocationIndex) / kGroupPoints; }
 
-int point_of_group() {
-    int i = int(gl_LocalInvocationIndex);
-    return kLanesFirst != 0 ? i / kExactLanes : i % kGroupPoints;
-}
+int point_of_group() { return int(gl_LocalInvocationIndex) % kGroupPoints; }
 
 int job_index() { return int(gl_WorkGroupID.x) * kExactSolveGroupX + point_of_group() / 4; }
 
